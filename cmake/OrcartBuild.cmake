@@ -1,0 +1,46 @@
+# How every target of orcart is built: language level, warnings, and one function per kind of target.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+add_library(orcart_flags INTERFACE)
+target_include_directories(orcart_flags INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_options(orcart_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+  $<$<BOOL:${ORCART_WERROR}>:-Werror>)
+
+# orcart_library(realtime/base SOURCES a.cpp ... LINK orcart::x ... SYSTEM dep ...)
+# makes the library orcart::realtime_base out of the calling folder; header-only where no SOURCES are given.
+function(orcart_library folder)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  string(REPLACE "/" "_" name ${folder})
+  string(REPLACE "-" "_" name ${name})
+  if(ARG_SOURCES)
+    add_library(orcart_${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(orcart_${name} PUBLIC orcart_flags ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK})
+  else()
+    add_library(orcart_${name} INTERFACE)
+    target_link_libraries(orcart_${name} INTERFACE orcart_flags ${ARG_LINK})
+  endif()
+  add_library(orcart::${name} ALIAS orcart_${name})
+endfunction()
+
+# orcart_test(name LABEL unit SOURCES ... LINK ...): one GoogleTest program, each of its tests known to ctest.
+function(orcart_test name)
+  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;LINK;ENVIRONMENT" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 60)
+  endif()
+  add_executable(test_${name} ${ARG_SOURCES})
+  target_link_libraries(test_${name} PRIVATE orcart_flags ${ARG_LINK} GTest::gtest GTest::gtest_main)
+  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
+    PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT
+    "ORCART_SOURCE_DIR=${CMAKE_SOURCE_DIR};ORCART_BINARY_DIR=${CMAKE_BINARY_DIR};${ARG_ENVIRONMENT}")
+endfunction()
+include(GoogleTest)

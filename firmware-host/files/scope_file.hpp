@@ -1,0 +1,27 @@
+// scope.toml, the calibration passport, and registration.toml.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "realtime/base/result.hpp"
+#include "realtime/geometry/pose.hpp"
+#include "realtime/optics/scope_model.hpp"
+
+namespace orcart {
+
+/// All errors at once, each with its line; unknown keys are refused; a lens that is not monotone to the mask's edge
+/// is refused.
+Result<ScopeModel> read_scope(const std::filesystem::path& file);
+Result<void> write_scope(const std::filesystem::path& file, const ScopeModel& scope);
+
+struct RegistrationFile {
+  Pose<M, R> X_MR;
+  std::string surface_hash;   ///< of the surface it belongs to; a mismatch is refused by the cart
+  double fre_mm = 0;          ///< fiducial registration error, RMS
+  double predicted_tre_mm = 0;
+};
+Result<RegistrationFile> read_registration(const std::filesystem::path& file);
+Result<void> write_registration(const std::filesystem::path& file, const RegistrationFile& registration);
+
+}  // namespace orcart

@@ -1,0 +1,29 @@
+// Surfaces in and out: PLY, STL and OBJ are read and checked, PLY is written.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "realtime/base/result.hpp"
+#include "realtime/geometry/triangle_mesh.hpp"
+
+namespace orcart {
+
+/// What was mended or noticed while reading; each is one sentence for the person.
+struct SurfaceNotes {
+  std::vector<std::string> sentences;
+};
+
+/// Reads and validates. Degenerate triangles are dropped and told; NaN, an empty file, indices out of range and more
+/// than 4 million triangles are refused with file, value and what would be accepted. An open surface is accepted and
+/// told. Coordinates are LPS mm; a file that states another system is converted or refused.
+Result<Surface> read_surface(const std::filesystem::path& file, SurfaceNotes* notes = nullptr);
+
+/// Binary little-endian PLY with the identity in comments. Written beside and renamed: never half a file.
+Result<void> write_ply(const std::filesystem::path& file, const Surface& surface);
+
+/// Checks a mesh made in memory the same way and gives it its hash.
+Result<Surface> make_surface(TriangleMesh mesh, const std::string& name, SurfaceNotes* notes = nullptr);
+
+}  // namespace orcart

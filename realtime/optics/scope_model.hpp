@@ -1,0 +1,43 @@
+// A calibrated endoscope: what scope.toml, the calibration passport, says of it.
+#pragma once
+
+#include <string>
+
+#include "realtime/geometry/pose.hpp"
+#include "realtime/optics/lens.hpp"
+
+namespace orcart {
+
+enum class Medium { air, water, saline };
+
+/// The circle of the picture that shows something.
+struct CircularMask {
+  double cx_px = 0, cy_px = 0;
+  double radius_px = 0;  ///< along x; along y it is radius_px * fy/fx (anamorphic pixels)
+  double soft_edge_px = 6;  ///< paint fades to nothing over this width inside the circle
+};
+
+/// How brightness falls: image = radiance * (reference_mm / distance)^2 * vignetting(angle). Used to even views out.
+struct FallOff {
+  double reference_mm = 20;          ///< distance at which the compensation is 1
+  double vignetting_cos_power = 0;   ///< vignetting = cos(angle)^power
+};
+
+/// The passport. Immutable after loading.
+struct ScopeModel {
+  std::string name;
+  int width_px = 0, height_px = 0;
+  Lens lens;
+  CircularMask mask;
+  double cone_half_angle_rad = 0;  ///< of the viewing cone about C's z axis: what the mapper clips with
+  double far_mm = 60;              ///< paint nothing beyond this distance from C
+  Pose<S, C> X_SC;                 ///< hand-eye: camera in scope marker
+  Pose<C, E> X_CE;                 ///< distal window centre in camera
+  FallOff fall_off;
+  Medium medium = Medium::air;
+  std::string calibrated_on;       ///< ISO date
+  double residual_px = 0;          ///< RMS of the calibration, pixels
+  double residual_mm = 0;          ///< RMS of the hand-eye, mm
+};
+
+}  // namespace orcart

@@ -1,0 +1,72 @@
+// Puts pictures onto the surface: the atlas on the GPU, painted texel by texel, with undo that restores exact bytes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "realtime/base/image.hpp"
+#include "realtime/base/result.hpp"
+#include "realtime/geometry/triangle_mesh.hpp"
+#include "realtime/mapper/cutout_patch.hpp"
+#include "realtime/optics/scope_model.hpp"
+#include "render/atlas/atlas_layout.hpp"
+
+namespace orcart {
+
+struct PainterSettings {
+  SeenFrom seen_from = SeenFrom::outside;
+  int undo_units = 16;                     ///< how many units can be taken back
+  std::uint32_t max_texels_per_step = 1'500'000;
+  double max_obliquity_rad = 1.3963;
+};
+
+/// Read back from the GPU: straight RGBA, row 0 first as in AtlasLayout; alpha 0 where nothing was painted.
+struct AtlasPicture {
+  int width_texels = 0, height_texels = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+struct PaintReport {
+  bool painted = false;
+  bool carried = false;          ///< the texel cap was reached; call paint_more()
+  std::uint32_t charts = 0;
+  std::uint32_t texels = 0;      ///< texels of the charts that were gone through
+};
+
+/// All calls from the thread whose GL context is current. After create() our own code allocates nothing but in
+/// read_back() and save functions; the driver may.
+class Painter {
+ public:
+  static Result<Painter> create(const Surface& surface, const AtlasLayout& layout, const ScopeModel& scope,
+                                const PainterSettings& settings);
+  Painter(Painter&&) noexcept;
+  Painter& operator=(Painter&&) noexcept;
+  ~Painter();
+
+  /// Takes a picture over to the GPU; it is what paint() paints and what live_texture() shows.
+  void upload(const ImageDescriptor& image) noexcept;
+  /// Paints the uploaded picture onto the patch's triangles, newest wins. Pictures with the same unit are undone
+  /// together.
+  PaintReport paint(const CutoutPatch& patch, std::uint32_t unit) noexcept;
+  PaintReport paint_more() noexcept;
+  /// Takes back the newest unit (true), byte by byte; false where there is none left.
+  bool undo() noexcept;
+  bool redo() noexcept;
+  void clear() noexcept;
+
+  /// Share of the surface's own texels (gutters not counted) that carry paint, 0..1. Cheap; call at most a few
+  /// times a second.
+  double coverage() noexcept;
+  AtlasPicture read_back() const;
+
+  std::uint32_t atlas_texture() const noexcept;   ///< GL name, RGBA8
+  std::uint32_t live_texture() const noexcept;    ///< GL name, RGBA8 of the newest upload, rows top first
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+  explicit Painter(std::unique_ptr<State> state);
+};
+
+}  // namespace orcart

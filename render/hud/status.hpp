@@ -1,0 +1,37 @@
+// What the panel says besides the picture: plain data, filled in by the painter stage, drawn by the screen.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace orcart {
+
+/// By source stamps alone; old data is never shown as live.
+enum class Freshness : std::uint8_t { lost, stale, live };
+
+/// One line of fixed length, so that it can be filled in on a real-time thread. Not longer: cut.
+struct Notice {
+  std::array<char, 96> text{};  ///< UTF-8, zero-terminated
+  enum class Level : std::uint8_t { none, info, warning, alarm } level = Level::none;
+};
+
+struct Status {
+  Freshness video = Freshness::lost;
+  Freshness tracker = Freshness::lost;
+  bool tool_seen = false;
+  bool reference_seen = false;
+  bool simulated = true;
+  bool degraded = false;           ///< no real-time rights, slips: see notice
+  bool software_rendering = false;
+  bool capture_acknowledged = false;  ///< a press arrived; its picture is not painted yet
+  bool streaming = false;
+  std::uint32_t captures = 0;
+  std::uint32_t late_frames = 0;
+  std::uint32_t budget_misses = 0;
+  float coverage = 0;              ///< 0..1
+  float latency_ms = 0;            ///< newest frame: dequeue to scan-out
+  float rendered_hz = 0;
+  Notice notice;                   ///< the one thing a person should read now
+};
+
+}  // namespace orcart

@@ -1,0 +1,66 @@
+// The whole panel picture: painted surface, scope outline, live inset, status line, SIMULATED mark.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "realtime/base/image.hpp"
+#include "realtime/base/result.hpp"
+#include "realtime/geometry/triangle_mesh.hpp"
+#include "realtime/optics/scope_model.hpp"
+#include "render/atlas/atlas_layout.hpp"
+#include "render/atlas/painter.hpp"
+#include "render/hud/status.hpp"
+
+namespace orcart {
+
+/// Where the eye is, in M. The field of view is vertical.
+struct Eye {
+  Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();
+  Eigen::Vector3d target_mm = Eigen::Vector3d::Zero();
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  double field_of_view_rad = 0.6;
+};
+
+/// An eye that sees the whole surface from a direction (unit vector from the surface's centre to the eye).
+Eye eye_on(const TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen::Vector3d& up);
+
+struct ScreenSettings {
+  int width_px = 1280, height_px = 800;
+  SeenFrom seen_from = SeenFrom::outside;  ///< inside: the wall nearest to the eye is left out, so that one looks in
+};
+
+/// What changes from picture to picture.
+struct ScreenState {
+  Eye eye;
+  std::optional<Pose<M, C>> X_MC;   ///< the scope, where it is known now; its outline is drawn only then
+  bool scope_predicted = false;
+  bool show_live = true;            ///< false: the inset is blank and says NO LIVE VIDEO
+  std::uint64_t paint_version = 0;  ///< changes when the atlas changes: the surface is redrawn only then or for a new eye
+  Status status;
+};
+
+/// All calls from the thread whose GL context is current. After create() our own code allocates nothing.
+class Screen {
+ public:
+  static Result<Screen> create(const Surface& surface, const AtlasLayout& layout, const ScopeModel& scope,
+                               const ScreenSettings& settings);
+  Screen(Screen&&) noexcept;
+  Screen& operator=(Screen&&) noexcept;
+  ~Screen();
+
+  /// Draws into `target` (CPU xrgb8888 or rgba8888 of the settings' size, or a dma-buf that can be imported).
+  void draw(const ScreenState& state, const Painter& painter, const ImageDescriptor& target) noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+  explicit Screen(std::unique_ptr<State> state);
+};
+
+/// The painted surface alone, for figures: no inset, no text. Allocates.
+Result<AtlasPicture> picture_of_surface(const Surface& surface, const AtlasLayout& layout, const Painter& painter,
+                                        const Eye& eye, const ScreenSettings& settings);
+
+}  // namespace orcart

@@ -1,0 +1,11 @@
+// The verbs of `orcart`: each adds its own subcommand with options, help and an example, and says how it ended.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace orcart {
+
+/// Each verb sets `exit_code` in its callback: 0 only on success. Errors are one sentence on stderr.
+void add_emulate(CLI::App& app, int& exit_code);
+
+}  // namespace orcart
