@@ -10,15 +10,15 @@
 
 namespace orcart {
 
-/// All errors at once, each with its line; unknown keys are refused; a lens that is not monotone to the mask's edge
-/// is refused.
+/// All errors at once, each with its line; unknown keys are refused; a lens that is not monotone to the
+/// mask's edge is refused.
 Result<ScopeModel> read_scope(const std::filesystem::path& file);
 Result<void> write_scope(const std::filesystem::path& file, const ScopeModel& scope);
 
 struct RegistrationFile {
   Pose<M, R> X_MR;
-  std::string surface_hash;   ///< of the surface it belongs to; a mismatch is refused by the cart
-  double fre_mm = 0;          ///< fiducial registration error, RMS
+  std::string surface_hash;  ///< of the surface it belongs to; a mismatch is refused by the cart
+  double fre_mm = 0;         ///< fiducial registration error, RMS
   double predicted_tre_mm = 0;
 };
 Result<RegistrationFile> read_registration(const std::filesystem::path& file);

@@ -15,9 +15,9 @@ struct SurfaceNotes {
   std::vector<std::string> sentences;
 };
 
-/// Reads and validates. Degenerate triangles are dropped and told; NaN, an empty file, indices out of range and more
-/// than 4 million triangles are refused with file, value and what would be accepted. An open surface is accepted and
-/// told. Coordinates are LPS mm; a file that states another system is converted or refused.
+/// Reads and validates. Degenerate triangles are dropped and told; NaN, an empty file, indices out of range
+/// and more than 4 million triangles are refused with file, value and what would be accepted. An open surface
+/// is accepted and told. Coordinates are LPS mm; a file that states another system is converted or refused.
 Result<Surface> read_surface(const std::filesystem::path& file, SurfaceNotes* notes = nullptr);
 
 /// Binary little-endian PLY with the identity in comments. Written beside and renamed: never half a file.

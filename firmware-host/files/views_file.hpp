@@ -20,8 +20,8 @@ struct ViewsFile {
   std::vector<std::string> notes;  ///< e.g. poses that were re-orthonormalised, with their deviation
 };
 
-/// `image,m00,m01,...,m23`: row-major 3x4 X_MC, mm. Rotations are re-orthonormalised and told up to a deviation
-/// |R'R - I| of 0.01, and refused beyond.
+/// `image,m00,m01,...,m23`: row-major 3x4 X_MC, mm. Rotations are re-orthonormalised and told up to a
+/// deviation |R'R - I| of 0.01, and refused beyond.
 Result<ViewsFile> read_views(const std::filesystem::path& file);
 
 }  // namespace orcart
