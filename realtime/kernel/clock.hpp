@@ -1,4 +1,5 @@
-// Where time comes from: the host's monotonic clock on a cart, a clock that is set by hand in tests and simulation.
+// Where time comes from: the host's monotonic clock on a cart, a clock that is set by hand in tests and
+// simulation.
 #pragma once
 
 #include "realtime/base/instant.hpp"
@@ -10,7 +11,8 @@ class Clock {
   virtual ~Clock() = default;
   /// Any thread; never blocks.
   virtual Instant now() const noexcept = 0;
-  /// Blocks the calling thread until `deadline` (absolute, so that a late wake-up does not shift the next one).
+  /// Blocks the calling thread until `deadline` (absolute, so that a late wake-up does not shift the next
+  /// one).
   virtual void sleep_until(Instant deadline) noexcept = 0;
 };
 

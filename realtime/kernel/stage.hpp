@@ -1,4 +1,5 @@
-// What every stage of the way of the data is: a step that is told the time, does bounded work and says what it did.
+// What every stage of the way of the data is: a step that is told the time, does bounded work and says what
+// it did.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +10,13 @@
 namespace orcart {
 
 struct StepReport {
-  bool worked = false;       ///< false: there was nothing to do, and the step is no sample for its histogram
-  bool carried = false;      ///< the cap was reached; the rest goes on in the next step
-  std::uint32_t items = 0;   ///< what was handled, in the stage's own unit (frames, replies, triangles, ...)
+  bool worked = false;      ///< false: there was nothing to do, and the step is no sample for its histogram
+  bool carried = false;     ///< the cap was reached; the rest goes on in the next step
+  std::uint32_t items = 0;  ///< what was handled, in the stage's own unit (frames, replies, triangles, ...)
 };
 
-/// A stage owns no thread and no file descriptor: the same object runs on the wall clock, on a simulated clock and
-/// from a recording. One thread calls step(), always the same one after arming.
+/// A stage owns no thread and no file descriptor: the same object runs on the wall clock, on a simulated
+/// clock and from a recording. One thread calls step(), always the same one after arming.
 class Stage {
  public:
   virtual ~Stage() = default;
