@@ -11,7 +11,7 @@ namespace orcart {
 /// X_AB: takes coordinates in B to coordinates in A. p_A = rotation * p_B + translation_mm.
 template <class A, class B>
 struct Pose {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< R_AB; columns are B's axes seen from A
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();    ///< R_AB; columns are B's axes seen from A
   Eigen::Vector3d translation_mm = Eigen::Vector3d::Zero();  ///< B's origin, in A
 
   Pose<B, A> inverse() const {
@@ -48,8 +48,9 @@ double angle_between_rad(const Pose<A, B>& a, const Pose<A, B>& b) {
   return Eigen::Quaterniond(a.rotation).angularDistance(Eigen::Quaterniond(b.rotation));
 }
 
-/// The rotation nearest to a 3x3 matrix (polar decomposition by SVD), and how far |R'R - I| (largest entry) it was
-/// from one. A deviation beyond 0.01, or a reflection, is the caller's to refuse.
+/// The rotation nearest to a 3x3 matrix (polar decomposition by SVD), and how far |R'R - I| (largest entry)
+/// it was from one. A deviation beyond 0.01, or a reflection, is the caller's to refuse. A matrix that is not
+/// finite deviates infinitely.
 struct NearestRotation {
   Eigen::Matrix3d rotation;
   double deviation = 0.0;

@@ -12,12 +12,13 @@
 namespace orcart {
 
 struct RayHit {
-  float distance_mm = 0;          ///< along the unit direction
+  float distance_mm = 0;  ///< along the unit direction
   std::uint32_t triangle = 0;
-  float b1 = 0, b2 = 0;           ///< barycentric weights of corners 1 and 2
+  float b1 = 0, b2 = 0;  ///< barycentric weights of corners 1 and 2
 };
 
-/// Built off the real-time path; queries are real-time: they allocate nothing, and any number of threads may ask.
+/// Built off the real-time path; queries are real-time: they allocate nothing, and any number of threads may
+/// ask.
 class RayScene {
  public:
   static Result<RayScene> create(const TriangleMesh& mesh);
@@ -28,12 +29,13 @@ class RayScene {
   /// The nearest triangle from either side along a unit direction, between near_mm and far_mm.
   std::optional<RayHit> nearest(const Eigen::Vector3f& origin_mm, const Eigen::Vector3f& direction,
                                 float far_mm, float near_mm = 0) const noexcept;
-  /// Whether something lies between `origin` and a point of the surface; the last margin_mm before the point are left
-  /// out, so that the point's own triangle does not hide it.
-  bool hidden(const Eigen::Vector3f& origin_mm, const Eigen::Vector3f& point_mm, float margin_mm) const noexcept;
+  /// Whether something lies between `origin` and a point of the surface; the last margin_mm before the point
+  /// are left out, so that the point's own triangle does not hide it.
+  bool hidden(const Eigen::Vector3f& origin_mm, const Eigen::Vector3f& point_mm,
+              float margin_mm) const noexcept;
   /// The same for many directions from one origin (unit, any order): hits[i].distance_mm < 0 where missed.
-  void nearest_many(const Eigen::Vector3f& origin_mm, std::span<const Eigen::Vector3f> directions, float far_mm,
-                    std::span<RayHit> hits) const noexcept;
+  void nearest_many(const Eigen::Vector3f& origin_mm, std::span<const Eigen::Vector3f> directions,
+                    float far_mm, std::span<RayHit> hits) const noexcept;
 
  private:
   struct State;

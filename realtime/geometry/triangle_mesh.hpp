@@ -10,7 +10,8 @@
 
 namespace orcart {
 
-/// Millimetres, LPS. Triangles are counter-clockwise seen from the side the normal points to (outward when closed).
+/// Millimetres, LPS. Triangles are counter-clockwise seen from the side the normal points to (outward when
+/// closed).
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices_mm;
   std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -13,14 +13,15 @@ enum class Medium { air, water, saline };
 /// The circle of the picture that shows something.
 struct CircularMask {
   double cx_px = 0, cy_px = 0;
-  double radius_px = 0;  ///< along x; along y it is radius_px * fy/fx (anamorphic pixels)
+  double radius_px = 0;     ///< along x; along y it is radius_px * fy/fx (anamorphic pixels)
   double soft_edge_px = 6;  ///< paint fades to nothing over this width inside the circle
 };
 
-/// How brightness falls: image = radiance * (reference_mm / distance)^2 * vignetting(angle). Used to even views out.
+/// How brightness falls: image = radiance * (reference_mm / distance)^2 * vignetting(angle). Used to even
+/// views out.
 struct FallOff {
-  double reference_mm = 20;          ///< distance at which the compensation is 1
-  double vignetting_cos_power = 0;   ///< vignetting = cos(angle)^power
+  double reference_mm = 20;         ///< distance at which the compensation is 1
+  double vignetting_cos_power = 0;  ///< vignetting = cos(angle)^power
 };
 
 /// The passport. Immutable after loading.
@@ -35,9 +36,9 @@ struct ScopeModel {
   Pose<C, E> X_CE;                 ///< distal window centre in camera
   FallOff fall_off;
   Medium medium = Medium::air;
-  std::string calibrated_on;       ///< ISO date
-  double residual_px = 0;          ///< RMS of the calibration, pixels
-  double residual_mm = 0;          ///< RMS of the hand-eye, mm
+  std::string calibrated_on;  ///< ISO date
+  double residual_px = 0;     ///< RMS of the calibration, pixels
+  double residual_mm = 0;     ///< RMS of the hand-eye, mm
 };
 
 }  // namespace orcart
