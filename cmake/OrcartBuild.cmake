@@ -31,16 +31,41 @@ function(orcart_library folder)
   add_library(orcart::${name} ALIAS orcart_${name})
 endfunction()
 
-# orcart_test(name LABEL unit SOURCES ... LINK ...): one GoogleTest program, each of its tests known to ctest.
+# orcart_test(name LABEL unit [THREADS] [SERIAL] [TIMEOUT s] SOURCES ... LINK ... ENVIRONMENT A=1 ...)
+# One GoogleTest program, each of its tests known to ctest under the label. THREADS also gives the label `threads`:
+# these are the tests that tools/check repeats under ThreadSanitizer. SERIAL: nothing else runs beside them.
+# The target tests_LABEL builds every program of a label.
 function(orcart_test name)
-  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;LINK;ENVIRONMENT" ${ARGN})
+  cmake_parse_arguments(ARG "THREADS;SERIAL" "LABEL;TIMEOUT" "SOURCES;LINK;ENVIRONMENT" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 60)
   endif()
+  set(labels ${ARG_LABEL})
+  if(ARG_THREADS)
+    list(APPEND labels threads)
+  endif()
+  set(environment ORCART_SOURCE_DIR=${CMAKE_SOURCE_DIR} ORCART_BINARY_DIR=${CMAKE_BINARY_DIR} ${ARG_ENVIRONMENT})
+
   add_executable(test_${name} ${ARG_SOURCES})
   target_link_libraries(test_${name} PRIVATE orcart_flags ${ARG_LINK} GTest::gtest GTest::gtest_main)
-  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
-    PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT
-    "ORCART_SOURCE_DIR=${CMAKE_SOURCE_DIR};ORCART_BINARY_DIR=${CMAKE_BINARY_DIR};${ARG_ENVIRONMENT}")
+  foreach(label ${labels})
+    if(NOT TARGET tests_${label})
+      add_custom_target(tests_${label})
+    endif()
+    add_dependencies(tests_${label} test_${name})
+  endforeach()
+
+  # Properties that are lists do not survive gtest_discover_tests' own PROPERTIES, so they are set beside it.
+  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST)
+  set(properties ${CMAKE_CURRENT_BINARY_DIR}/test_${name}_properties.cmake)
+  file(CONFIGURE OUTPUT ${properties} @ONLY CONTENT [[
+if(test_@name@_TESTS)
+  set_tests_properties(${test_@name@_TESTS} PROPERTIES
+    LABELS "@labels@" TIMEOUT @ARG_TIMEOUT@ RUN_SERIAL @ARG_SERIAL@ ENVIRONMENT "@environment@")
+endif()
+]])
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${properties})
 endfunction()
-include(GoogleTest)
+if(ORCART_TESTS)
+  include(GoogleTest)
+endif()
