@@ -85,6 +85,7 @@ TEST(SpscQueue, BetweenTwoThreadsLosesNothingButWhatItCounted) {
       last = element.number;
       ++received;
     }
+    std::this_thread::yield();
   }
   producer.join();
   EXPECT_EQ(torn, 0u);
