@@ -12,7 +12,7 @@ endif()
 
 add_library(orcart_flags INTERFACE)
 target_include_directories(orcart_flags INTERFACE ${CMAKE_SOURCE_DIR})
-target_compile_options(orcart_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+target_compile_options(orcart_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wno-missing-field-initializers
   $<$<BOOL:${ORCART_WERROR}>:-Werror>)
 
 # orcart_library(realtime/base SOURCES a.cpp ... LINK orcart::x ... SYSTEM dep ...)
