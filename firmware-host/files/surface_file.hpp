@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,15 +16,23 @@ struct SurfaceNotes {
   std::vector<std::string> sentences;
 };
 
+/// The two right-handed patient spaces that surface files come in.
+enum class Space { lps, ras };
+
 /// Reads and validates. Degenerate triangles are dropped and told; NaN, an empty file, indices out of range
 /// and more than 4 million triangles are refused with file, value and what would be accepted. An open surface
-/// is accepted and told. Coordinates are LPS mm; a file that states another system is converted or refused.
-Result<Surface> read_surface(const std::filesystem::path& file, SurfaceNotes* notes = nullptr);
+/// is accepted and told; a closed one that is inside out is turned. Coordinates become LPS mm: a file that
+/// states its space
+/// (`SPACE=LPS` or `SPACE=RAS` in a comment, as 3D Slicer writes) is obeyed; one that states none is taken to
+/// be `where_unstated`, and refused where that is not told. A file that states a hash of its own must match
+/// it.
+Result<Surface> read_surface(const std::filesystem::path& file, SurfaceNotes* notes = nullptr,
+                             std::optional<Space> where_unstated = std::nullopt);
 
 /// Binary little-endian PLY with the identity in comments. Written beside and renamed: never half a file.
 Result<void> write_ply(const std::filesystem::path& file, const Surface& surface);
 
-/// Checks a mesh made in memory the same way and gives it its hash.
+/// Checks a mesh made in memory (LPS mm) the same way and gives it its hash; `name` is for messages.
 Result<Surface> make_surface(TriangleMesh mesh, const std::string& name, SurfaceNotes* notes = nullptr);
 
 }  // namespace orcart

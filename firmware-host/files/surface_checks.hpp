@@ -1,0 +1,20 @@
+// What a surface must be told about: triangles without area, open edges, which way it faces, and its hash.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "realtime/geometry/triangle_mesh.hpp"
+
+namespace orcart::checks {
+
+/// Removes triangles with a repeated vertex or no area; says how many.
+std::size_t drop_degenerate_triangles(TriangleMesh& mesh);
+/// Every edge belongs to exactly two triangles, which run along it in opposite directions.
+bool is_closed(const TriangleMesh& mesh);
+/// Positive for a closed mesh whose triangles are counter-clockwise seen from outside (divergence theorem).
+double signed_volume_mm3(const TriangleMesh& mesh);
+/// 128 bits in hex over vertices and triangles, in order.
+std::string mesh_hash(const TriangleMesh& mesh);
+
+}  // namespace orcart::checks

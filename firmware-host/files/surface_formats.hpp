@@ -1,0 +1,40 @@
+// The three surface formats, parsed from memory: each gives triangles and what the file says of itself,
+// unchecked beyond that.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "firmware-host/files/surface_file.hpp"
+#include "realtime/base/result.hpp"
+#include "realtime/geometry/triangle_mesh.hpp"
+
+namespace orcart {
+
+constexpr std::size_t kLargestTriangleCount = 4'000'000;
+constexpr std::size_t kLargestVertexCount = 3 * kLargestTriangleCount;
+
+/// A surface as its file has it: coordinates not yet converted, indices within range, numbers perhaps not
+/// finite.
+struct ParsedSurface {
+  TriangleMesh mesh;
+  SurfaceIdentity stated;            ///< hash, series and frame of reference where the file has them
+  std::optional<std::string> space;  ///< the word after SPACE= (3D Slicer's convention), e.g. LPS
+};
+
+/// `name` is the file's, for messages. The whole file must be in `bytes`; hostile bytes give an error, never
+/// more memory than a small multiple of their count.
+Result<ParsedSurface> parse_ply(std::span<const std::byte> bytes, const std::string& name);
+Result<ParsedSurface> parse_stl(std::span<const std::byte> bytes, const std::string& name);
+Result<ParsedSurface> parse_obj(std::span<const std::byte> bytes, const std::string& name);
+
+/// Takes what one comment line says: SPACE=..., and orcart's own `orcart hash|series|frame_of_reference ...`.
+void take_comment(std::string_view comment, ParsedSurface& surface);
+
+/// Fans a polygon into triangles; false where an index is beyond `vertex_count`.
+bool append_polygon(std::span<const std::uint32_t> corners, std::size_t vertex_count, TriangleMesh& mesh);
+
+}  // namespace orcart

@@ -1,0 +1,190 @@
+// Every surface format gives the same triangles, in LPS, with their identity.
+#include "firmware-host/files/surface_file.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "tests/firmware-host/files/surface_samples.hpp"
+#include "tests/firmware-host/files/temporary_folder.hpp"
+
+namespace orcart {
+namespace {
+
+void expect_tetrahedron(const Result<Surface>& surface) {
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_EQ(surface->mesh.vertices_mm, tetrahedron().vertices_mm);
+  EXPECT_EQ(surface->mesh.triangles, tetrahedron().triangles);
+  EXPECT_TRUE(surface->closed);
+}
+
+template <class Number>
+void append(std::string& bytes, Number number, bool big = false) {
+  char raw[sizeof number];
+  std::memcpy(raw, &number, sizeof number);
+  if (big) std::reverse(raw, raw + sizeof raw);
+  bytes.append(raw, sizeof raw);
+}
+
+TEST(SurfaceFile, ReadsAsciiPly) {
+  const TemporaryFolder folder;
+  expect_tetrahedron(read_surface(folder.write("s.ply", ascii_ply())));
+}
+
+TEST(SurfaceFile, ReadsAsciiPlyWithCrLf) {
+  const TemporaryFolder folder;
+  std::string text;
+  for (const char c : ascii_ply()) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  expect_tetrahedron(read_surface(folder.write("s.ply", text)));
+}
+
+TEST(SurfaceFile, ReadsBigEndianPlyWithDoublesExtrasAndAnyOrder) {
+  const TemporaryFolder folder;
+  std::string bytes =
+      "ply\nformat binary_big_endian 1.0\ncomment SPACE=LPS\nelement vertex 4\nproperty double z\nproperty "
+      "uchar red\n"
+      "property double x\nproperty list uchar short marks\nproperty double y\nelement edge 1\nproperty int "
+      "v\n"
+      "element face 4\nproperty uchar flag\nproperty list ushort uint vertex_index\n"
+      "property list uchar float texcoord\nend_header\n";
+  for (const auto& v : tetrahedron().vertices_mm) {
+    append<double>(bytes, v.z(), true);
+    bytes += '\x7f';
+    append<double>(bytes, v.x(), true);
+    append<std::uint8_t>(bytes, 2);
+    append<std::int16_t>(bytes, -5, true);
+    append<std::int16_t>(bytes, 5, true);
+    append<double>(bytes, v.y(), true);
+  }
+  append<std::int32_t>(bytes, 9, true);
+  for (const auto& t : tetrahedron().triangles) {
+    append<std::uint8_t>(bytes, 1);
+    append<std::uint16_t>(bytes, 3, true);
+    for (const auto i : t) append<std::uint32_t>(bytes, i, true);
+    append<std::uint8_t>(bytes, 1);
+    append<float>(bytes, 0.5F, true);
+  }
+  expect_tetrahedron(read_surface(folder.write("s.ply", bytes)));
+}
+
+TEST(SurfaceFile, WrittenPlyIsReadBackToTheBit) {
+  const TemporaryFolder folder;
+  auto surface = make_surface(tetrahedron(), "made");
+  ASSERT_TRUE(surface);
+  surface->mesh.vertices_mm[1].x() = 0.1F;
+  surface->identity.series = "1.2.840 \nT1 axial";
+  surface->identity.frame_of_reference = "1.2.3";
+  ASSERT_TRUE(write_ply(folder / "s.ply", *surface));
+  const auto read = read_surface(folder / "s.ply");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->mesh.vertices_mm, surface->mesh.vertices_mm);
+  EXPECT_EQ(read->mesh.triangles, surface->mesh.triangles);
+  EXPECT_EQ(read->identity.series, "1.2.840  T1 axial");
+  EXPECT_EQ(read->identity.frame_of_reference, "1.2.3");
+  EXPECT_EQ(read->identity.hash.size(), 32U);
+  EXPECT_EQ(folder.count(), 1U);
+}
+
+TEST(SurfaceFile, TheHashFollowsEveryVertexAndTriangle) {
+  const auto hash = [](TriangleMesh mesh) { return make_surface(std::move(mesh), "made")->identity.hash; };
+  TriangleMesh moved = tetrahedron(), turned = tetrahedron();
+  moved.vertices_mm[3].z() = 3.0000002F;
+  std::rotate(turned.triangles[0].begin(), turned.triangles[0].begin() + 1, turned.triangles[0].end());
+  EXPECT_EQ(hash(tetrahedron()), hash(tetrahedron()));
+  EXPECT_NE(hash(tetrahedron()), hash(moved));
+  EXPECT_NE(hash(tetrahedron()), hash(turned));
+}
+
+TEST(SurfaceFile, ConvertsRasAsSlicerStatesIt) {
+  const TemporaryFolder folder;
+  const auto surface =
+      read_surface(folder.write("s.ply", ascii_ply("comment 3D Slicer output. SPACE=RAS\n")));
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_EQ(surface->mesh.vertices_mm[1], Eigen::Vector3f(-1, 0, 0));
+  EXPECT_EQ(surface->mesh.vertices_mm[2], Eigen::Vector3f(0, -2, 0));
+  EXPECT_EQ(surface->mesh.vertices_mm[3], Eigen::Vector3f(0, 0, 3));
+}
+
+TEST(SurfaceFile, AsksForASpaceThatIsNotStatedUnlessTold) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("s.ply", ascii_ply(""));
+  const auto refused = read_surface(file);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("states no coordinate system"), std::string::npos);
+  expect_tetrahedron(read_surface(file, nullptr, Space::lps));
+  EXPECT_EQ(read_surface(file, nullptr, Space::ras)->mesh.vertices_mm[1].x(), -1);
+}
+
+TEST(SurfaceFile, MergesTheVerticesOfAsciiStlExactly) {
+  const TemporaryFolder folder;
+  std::string text = "solid x SPACE=LPS\n";
+  const TriangleMesh mesh = tetrahedron();
+  for (const auto& t : mesh.triangles) {
+    text += " facet normal 0 0 0\n  outer loop\n";
+    for (const auto i : t) {
+      const auto& v = mesh.vertices_mm[i];
+      text += "   vertex " + std::to_string(v.x()) + " " + std::to_string(v.y()) + " " +
+              std::to_string(v.z()) + "\n";
+    }
+    text += "  endloop\n endfacet\n";
+  }
+  const auto surface = read_surface(folder.write("s.STL", text + "endsolid x\n"));
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_EQ(surface->mesh.vertices_mm.size(), 4U);
+  EXPECT_TRUE(surface->closed);
+}
+
+TEST(SurfaceFile, ReadsBinaryStlEvenIfItsHeaderBeginsWithSolid) {
+  const TemporaryFolder folder;
+  std::string bytes = "solid SPACE=LPS";
+  bytes.resize(80);
+  const TriangleMesh mesh = tetrahedron();
+  append<std::uint32_t>(bytes, 4);
+  for (const auto& t : mesh.triangles) {
+    bytes.append(12, '\0');
+    for (const auto i : t)
+      for (const float x : mesh.vertices_mm[i]) append<float>(bytes, x == 0 && i == 1 ? -0.0F : x);
+    bytes.append(2, '\0');
+  }
+  const auto surface = read_surface(folder.write("s.stl", bytes));
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_EQ(surface->mesh.vertices_mm.size(), 4U);
+  EXPECT_TRUE(surface->closed);
+}
+
+TEST(SurfaceFile, FansTheFacesOfObjAndTakesNegativeIndices) {
+  const TemporaryFolder folder;
+  const auto surface = read_surface(folder.write(
+      "s.obj",
+      "# SPACE=LPS\no box\nv 0 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv +0 1 0\nvt 0 0\nf 1/1/1 2//1 3/1 -1\n"));
+  ASSERT_TRUE(surface) << surface.error().message;
+  ASSERT_EQ(surface->mesh.triangles.size(), 2U);
+  EXPECT_EQ(surface->mesh.triangles[1], (std::array<std::uint32_t, 3>{0, 2, 3}));
+  EXPECT_FALSE(surface->closed);
+}
+
+TEST(SurfaceFile, TellsWhatItMended) {
+  TriangleMesh mesh = tetrahedron();
+  for (auto& t : mesh.triangles) std::swap(t[0], t[1]);
+  mesh.triangles.push_back({1, 1, 2});
+  SurfaceNotes notes;
+  const auto surface = make_surface(mesh, "made", &notes);
+  ASSERT_TRUE(surface);
+  ASSERT_EQ(notes.sentences.size(), 2U);
+  EXPECT_EQ(notes.sentences[0], "made: 1 triangles without area were dropped");
+  EXPECT_EQ(notes.sentences[1], "made: the surface was inside out; its triangles were turned");
+  EXPECT_TRUE(surface->closed);
+}
+
+TEST(SurfaceFile, TellsThatASurfaceIsOpen) {
+  TriangleMesh mesh = tetrahedron();
+  mesh.triangles.pop_back();
+  SurfaceNotes notes;
+  EXPECT_FALSE(make_surface(mesh, "made", &notes)->closed);
+  ASSERT_EQ(notes.sentences.size(), 1U);
+  EXPECT_NE(notes.sentences[0].find("open"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace orcart
