@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -53,6 +55,12 @@ std::optional<Scalar> scalar_of(std::string_view word) {
 std::size_t bytes_of(Scalar type) {
   constexpr std::array<std::size_t, 8> kBytes{1, 1, 2, 2, 4, 4, 4, 8};
   return kBytes[static_cast<std::size_t>(type)];
+}
+
+std::string plain(double number) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.12g", number);
+  return text.data();
 }
 
 /// One line of the header into `header`; what is wrong with it, or nothing.
@@ -291,21 +299,18 @@ class PlyParser {
   Result<void> read_corners(const Element& element, std::uint64_t face, const Property& property,
                             Body& body) {
     const auto count = body.next(*property.count_type);
-    if (!count || !(*count >= 0) || *count > static_cast<double>(body.left()))
-      return cut_short(element, face, body);
-    if (*count < 3 || *count > kLargestPolygon)
-      return fail(name_ + ": face " + std::to_string(face) + " has " +
-                  std::to_string(static_cast<long>(*count)) + " corners; 3 to " +
+    if (!count) return cut_short(element, face, body);
+    if (!(*count >= 3 && *count <= kLargestPolygon))
+      return fail(name_ + ": face " + std::to_string(face) + " has " + plain(*count) + " corners; 3 to " +
                   std::to_string(kLargestPolygon) + " are accepted");
     corners_.clear();
     for (int i = 0; i < static_cast<int>(*count); ++i) {
       const auto index = body.next(property.type);
       if (!index) return cut_short(element, face, body);
-      const bool fits = *index >= 0 && *index < static_cast<double>(surface_.mesh.vertices_mm.size());
-      if (!fits)
-        return fail(name_ + ": face " + std::to_string(face) + " has vertex " +
-                    std::to_string(static_cast<long long>(std::clamp(*index, -1e15, 1e15))) + "; 0 to " +
-                    std::to_string(surface_.mesh.vertices_mm.size()) + " less one is accepted");
+      const std::size_t vertices = surface_.mesh.vertices_mm.size();
+      if (!(*index >= 0 && *index < static_cast<double>(vertices) && std::floor(*index) == *index))
+        return fail(name_ + ": face " + std::to_string(face) + " has vertex " + plain(*index) +
+                    "; whole numbers below " + std::to_string(vertices) + " are accepted");
       corners_.push_back(static_cast<std::uint32_t>(*index));
     }
     append_polygon(corners_, surface_.mesh.vertices_mm.size(), surface_.mesh);
