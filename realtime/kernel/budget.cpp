@@ -1,0 +1,42 @@
+// Keeps a stage's ledger and judges it at the quantile its samples support.
+#include "realtime/kernel/budget.hpp"
+
+namespace orcart {
+namespace {
+
+// One writer: load and store need not be one step. Relaxed, without a partner: a count alone.
+void add(std::atomic<std::uint64_t>& to, std::uint64_t what) noexcept {
+  to.store(to.load(std::memory_order_relaxed) + what, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+BudgetVerdict judge(const Budget& budget, const HistogramSnapshot& wall) noexcept {
+  BudgetVerdict verdict{.within_bound = wall.max() <= budget.bound,
+                        .judged_quantile = highest_supported_quantile(wall.count())};
+  if (verdict.judged_quantile) {
+    verdict.at_quantile = wall.percentile(*verdict.judged_quantile).value_or(wall.max());
+    verdict.within_quantile = verdict.at_quantile <= budget.p999;
+  }
+  return verdict;
+}
+
+void StageLedger::record(const StepTiming& timing, const StepReport& report) noexcept {
+  if (!report.worked) return;
+  wall_.record(timing.wall);
+  cpu_.record(timing.cpu);
+  add(items_, report.items);
+  if (report.carried) add(carried_, 1);
+  if (timing.wall > budget_.p999) add(over_p999_, 1);
+  if (timing.wall <= budget_.bound) return;
+  add(over_bound_, 1);
+  last_miss_ns_.store(nanos_since_zero(timing.at), std::memory_order_relaxed);  // read alone, no partner
+}
+
+std::optional<Instant> StageLedger::last_miss() const noexcept {
+  const std::int64_t ns = last_miss_ns_.load(std::memory_order_relaxed);  // read alone, no partner
+  if (ns == kNever) return std::nullopt;
+  return instant_from_nanos(ns);
+}
+
+}  // namespace orcart
