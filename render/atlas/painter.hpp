@@ -1,4 +1,5 @@
-// Puts pictures onto the surface: the atlas on the GPU, painted texel by texel, with undo that restores exact bytes.
+// Puts pictures onto the surface: the atlas on the GPU, painted texel by texel, with undo that restores exact
+// bytes.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +17,14 @@ namespace orcart {
 
 struct PainterSettings {
   SeenFrom seen_from = SeenFrom::outside;
-  int undo_units = 16;                     ///< how many units can be taken back
+  int undo_units = 16;  ///< how many units can be taken back
   std::uint32_t max_texels_per_step = 1'500'000;
   double max_obliquity_rad = 1.3963;
+  bool even_out_light = false;  ///< compensate ScopeModel::fall_off
 };
 
 /// Read back from the GPU: straight RGBA, row 0 first as in AtlasLayout; alpha 0 where nothing was painted.
+/// Of a view: opaque.
 struct AtlasPicture {
   int width_texels = 0, height_texels = 0;
   std::vector<std::uint8_t> rgba;
@@ -29,13 +32,17 @@ struct AtlasPicture {
 
 struct PaintReport {
   bool painted = false;
-  bool carried = false;          ///< the texel cap was reached; call paint_more()
+  bool carried = false;  ///< the texel cap was reached; call paint_more()
   std::uint32_t charts = 0;
-  std::uint32_t texels = 0;      ///< texels of the charts that were gone through
+  std::uint32_t texels = 0;  ///< texels of the charts that were gone through
 };
 
-/// All calls from the thread whose GL context is current. After create() our own code allocates nothing but in
-/// read_back() and save functions; the driver may.
+namespace gles {
+class PictureTexture;
+}
+
+/// All calls from the thread whose GL context is current. After create() our own code allocates nothing but
+/// in read_back(); the driver may.
 class Painter {
  public:
   static Result<Painter> create(const Surface& surface, const AtlasLayout& layout, const ScopeModel& scope,
@@ -44,24 +51,26 @@ class Painter {
   Painter& operator=(Painter&&) noexcept;
   ~Painter();
 
-  /// Takes a picture over to the GPU; it is what paint() paints and what live_texture() shows.
-  void upload(const ImageDescriptor& image) noexcept;
-  /// Paints the uploaded picture onto the patch's triangles, newest wins. Pictures with the same unit are undone
-  /// together.
+  /// Takes a picture over to the GPU; it is what paint() paints and what the inset shows. False where its
+  /// size is not the scope's or its format is unknown: the last picture stays.
+  bool upload(const ImageDescriptor& image) noexcept;
+  /// Paints the uploaded picture onto the patch's triangles, newest wins. Pictures with the same unit are
+  /// undone together. Of a view in parts, only the last part paints: by then all that hides is known.
   PaintReport paint(const CutoutPatch& patch, std::uint32_t unit) noexcept;
+  /// Goes on where the texel cap stopped the paint() before, with the picture that is uploaded now.
   PaintReport paint_more() noexcept;
   /// Takes back the newest unit (true), byte by byte; false where there is none left.
   bool undo() noexcept;
   bool redo() noexcept;
   void clear() noexcept;
 
-  /// Share of the surface's own texels (gutters not counted) that carry paint, 0..1. Cheap; call at most a few
-  /// times a second.
+  /// Share of the surface's own texels (gutters not counted) that carry paint, 0..1. Cheap; call at most a
+  /// few times a second.
   double coverage() noexcept;
   AtlasPicture read_back() const;
 
-  std::uint32_t atlas_texture() const noexcept;   ///< GL name, RGBA8
-  std::uint32_t live_texture() const noexcept;    ///< GL name, RGBA8 of the newest upload, rows top first
+  std::uint32_t atlas_texture() const noexcept;          ///< GL name, RGBA8, colour premultiplied by alpha
+  const gles::PictureTexture& picture() const noexcept;  ///< the newest upload
 
  private:
   struct State;

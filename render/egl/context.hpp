@@ -26,7 +26,7 @@ class GlContext {
 
   Result<void> make_current() noexcept;
   void release_current() noexcept;
-  RenderClass render_class() const noexcept;       ///< software for llvmpipe, softpipe and swrast
+  RenderClass render_class() const noexcept;          ///< software for llvmpipe, softpipe and swrast
   const std::string& renderer_name() const noexcept;  ///< GL_RENDERER
   bool can_import_dma_buf() const noexcept;
 

@@ -21,17 +21,17 @@ struct Status {
   bool tool_seen = false;
   bool reference_seen = false;
   bool simulated = true;
-  bool degraded = false;           ///< no real-time rights, slips: see notice
+  bool degraded = false;  ///< no real-time rights, slips: see notice
   bool software_rendering = false;
   bool capture_acknowledged = false;  ///< a press arrived; its picture is not painted yet
   bool streaming = false;
   std::uint32_t captures = 0;
   std::uint32_t late_frames = 0;
   std::uint32_t budget_misses = 0;
-  float coverage = 0;              ///< 0..1
-  float latency_ms = 0;            ///< newest frame: dequeue to scan-out
+  float coverage = 0;    ///< 0..1
+  float latency_ms = 0;  ///< newest frame: dequeue to scan-out
   float rendered_hz = 0;
-  Notice notice;                   ///< the one thing a person should read now
+  Notice notice;  ///< the one thing a person should read now
 };
 
 }  // namespace orcart

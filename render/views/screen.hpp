@@ -28,16 +28,18 @@ Eye eye_on(const TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen::V
 
 struct ScreenSettings {
   int width_px = 1280, height_px = 800;
-  SeenFrom seen_from = SeenFrom::outside;  ///< inside: the wall nearest to the eye is left out, so that one looks in
+  SeenFrom seen_from =
+      SeenFrom::outside;  ///< inside: the wall nearest to the eye is left out, so that one looks in
 };
 
 /// What changes from picture to picture.
 struct ScreenState {
   Eye eye;
-  std::optional<Pose<M, C>> X_MC;   ///< the scope, where it is known now; its outline is drawn only then
+  std::optional<Pose<M, C>> X_MC;  ///< the scope, where it is known now; its outline is drawn only then
   bool scope_predicted = false;
-  bool show_live = true;            ///< false: the inset is blank and says NO LIVE VIDEO
-  std::uint64_t paint_version = 0;  ///< changes when the atlas changes: the surface is redrawn only then or for a new eye
+  bool show_live = true;  ///< false: the inset is blank and says NO LIVE VIDEO
+  std::uint64_t paint_version =
+      0;  ///< changes when the atlas changes: the surface is redrawn only then or for a new eye
   Status status;
 };
 
@@ -60,7 +62,8 @@ class Screen {
 };
 
 /// The painted surface alone, for figures: no inset, no text. Allocates.
-Result<AtlasPicture> picture_of_surface(const Surface& surface, const AtlasLayout& layout, const Painter& painter,
-                                        const Eye& eye, const ScreenSettings& settings);
+Result<AtlasPicture> picture_of_surface(const Surface& surface, const AtlasLayout& layout,
+                                        const Painter& painter, const Eye& eye,
+                                        const ScreenSettings& settings);
 
 }  // namespace orcart

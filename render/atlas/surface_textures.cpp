@@ -1,0 +1,65 @@
+// Uploads the static textures of a surface; runs once.
+#include "render/atlas/surface_textures.hpp"
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace orcart {
+namespace {
+
+constexpr int kRow = 2048;
+constexpr std::uint32_t kNothing = 0x7FFFFFFF, kInside = 0x80000000;
+
+int rows_for(std::size_t count) {
+  return static_cast<int>((count + kRow - 1) / kRow);
+}
+
+gles::Texture owner_texture(const AtlasLayout& layout) {
+  std::vector<std::uint32_t> words(layout.owners.size());
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::uint32_t triangle = layout.owners[i].triangle;
+    words[i] = triangle == 0xFFFFFFFF ? kNothing : (triangle | (layout.inside[i] != 0 ? kInside : 0));
+  }
+  auto texture = gles::make_texture({GL_R32UI, layout.width_texels, layout.height_texels});
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, layout.width_texels, layout.height_texels, GL_RED_INTEGER,
+                  GL_UNSIGNED_INT, words.data());
+  return texture;
+}
+
+gles::Texture weight_texture(const AtlasLayout& layout) {
+  std::vector<float> pairs(layout.owners.size() * 2);
+  for (std::size_t i = 0; i < layout.owners.size(); ++i) {
+    pairs[2 * i] = layout.owners[i].b1;
+    pairs[2 * i + 1] = layout.owners[i].b2;
+  }
+  auto texture = gles::make_texture({GL_RG16F, layout.width_texels, layout.height_texels});
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, layout.width_texels, layout.height_texels, GL_RG, GL_FLOAT,
+                  pairs.data());
+  return texture;
+}
+
+}  // namespace
+
+SurfaceTextures make_surface_textures(const TriangleMesh& mesh, const AtlasLayout& layout) {
+  SurfaceTextures textures{.owner = owner_texture(layout), .weights = weight_texture(layout)};
+
+  const int triangle_rows = rows_for(mesh.triangles.size());
+  std::vector<std::uint32_t> corners(static_cast<std::size_t>(triangle_rows) * kRow * 4, 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t c = 0; c < 3; ++c) corners[4 * t + c] = mesh.triangles[t][c];
+  textures.triangles = gles::make_texture({GL_RGBA32UI, kRow, triangle_rows});
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kRow, triangle_rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+                  corners.data());
+
+  const int vertex_rows = rows_for(mesh.vertices_mm.size());
+  std::vector<float> positions(static_cast<std::size_t>(vertex_rows) * kRow * 4, 0);
+  for (std::size_t v = 0; v < mesh.vertices_mm.size(); ++v)
+    for (int axis = 0; axis < 3; ++axis)
+      positions[4 * v + static_cast<std::size_t>(axis)] = mesh.vertices_mm[v][axis];
+  textures.vertices = gles::make_texture({GL_RGBA32F, kRow, vertex_rows});
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kRow, vertex_rows, GL_RGBA, GL_FLOAT, positions.data());
+  return textures;
+}
+
+}  // namespace orcart

@@ -1,0 +1,20 @@
+// The surface and its atlas layout as textures, so that the paint shader finds the point behind every texel.
+#pragma once
+
+#include "realtime/geometry/triangle_mesh.hpp"
+#include "render/atlas/atlas_layout.hpp"
+#include "render/gles/objects.hpp"
+
+namespace orcart {
+
+struct SurfaceTextures {
+  gles::Texture
+      owner;  ///< R32UI, atlas size: triangle, bit 31 where the centre lies inside it; 0x7FFFFFFF nothing
+  gles::Texture weights;    ///< RG16F, atlas size: barycentric weights of corners 1 and 2
+  gles::Texture triangles;  ///< RGBA32UI, row-wrapped: the three vertices
+  gles::Texture vertices;   ///< RGBA32F, row-wrapped: positions in M, mm
+};
+
+SurfaceTextures make_surface_textures(const TriangleMesh& mesh, const AtlasLayout& layout);
+
+}  // namespace orcart

@@ -1,0 +1,61 @@
+// What the atlas looked like before each unit of paint: touched tiles only, in a store of fixed size.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/atlas/tile_copier.hpp"
+
+namespace orcart {
+
+/// The picture that is being kept: a square atlas whose size is a multiple of kTileTexels.
+struct KeptAtlas {
+  GLuint texture = 0, framebuffer = 0;
+  int size_texels = 0;
+};
+
+/// Units come and go like a stack that forgets its bottom: when slots or units run out, the oldest unit can
+/// no longer be undone. All calls with the GL context current; nothing is allocated after create().
+class UndoStore {
+ public:
+  static Result<UndoStore> create(const KeptAtlas& atlas, int units);
+
+  /// Keeps those of the tiles (row-major numbers) that `unit` has not kept yet. What had been undone is
+  /// forgotten.
+  void keep(std::uint32_t unit, std::span<const std::uint32_t> tiles) noexcept;
+  /// Swaps the newest unit's tiles with what the atlas shows; their numbers, empty where there is nothing to
+  /// undo.
+  std::span<const std::uint32_t> undo() noexcept;
+  std::span<const std::uint32_t> redo() noexcept;
+  void forget_all() noexcept;
+
+ private:
+  struct Unit {
+    std::uint32_t id = 0;
+    std::uint64_t first_slot = 0,
+                  slot_count = 0;  ///< slots are numbered for ever; their place is modulo the store
+  };
+  UndoStore() = default;
+  Unit& unit_at(std::uint64_t number) noexcept { return units_[number % units_.size()]; }
+  void begin(std::uint32_t unit) noexcept;
+  void make_room(std::size_t slots) noexcept;
+  std::span<const std::uint32_t> swap(const Unit& unit) noexcept;
+  TileMove move_to_store(std::uint32_t tile, std::uint64_t slot) const noexcept;
+
+  KeptAtlas atlas_;
+  std::uint32_t tiles_per_row_ = 0, slots_per_row_ = 0;
+  std::uint64_t slots_ = 0;
+  gles::Texture store_, scratch_;
+  gles::Framebuffer store_framebuffer_, scratch_framebuffer_;
+  std::vector<TileCopier> copier_;  ///< exactly one
+  std::vector<Unit> units_;
+  std::uint64_t oldest_ = 0, end_ = 0,
+                newest_ = 0;  ///< units [oldest_, newest_) can be undone, [newest_, end_) redone
+  std::vector<std::uint32_t> tile_of_slot_;
+  std::vector<std::uint32_t> kept_in_unit_;  ///< per tile: the number of the unit that kept it last, plus one
+  std::vector<TileMove> moves_, back_;
+  std::vector<std::uint32_t> touched_;
+};
+
+}  // namespace orcart

@@ -1,0 +1,209 @@
+// One column, read from top to bottom: what is seen, whether it is live, how far the painting has come.
+#include "render/hud/status_panel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+namespace orcart {
+namespace {
+
+constexpr Colour kGround{22, 24, 27, 255}, kLine{44, 48, 53, 255};
+constexpr Colour kInk{236, 236, 232, 255}, kQuiet{148, 153, 160, 255}, kDark{16, 17, 19, 255};
+constexpr Colour kGood{98, 200, 132, 255}, kWarn{244, 185, 66, 255}, kBad{238, 92, 82, 255},
+    kCalm{110, 168, 224, 255};
+
+struct StateWord {
+  std::string_view word;
+  Colour colour;
+};
+
+StateWord word_for(Freshness freshness) {
+  switch (freshness) {
+    case Freshness::live:
+      return {"LIVE", kGood};
+    case Freshness::stale:
+      return {"STALE", kWarn};
+    case Freshness::lost:
+      break;
+  }
+  return {"LOST", kBad};
+}
+
+/// A short number with its unit, on the stack.
+class Figure {
+ public:
+  Figure& whole(long value) {
+    at_ = std::to_chars(at_, end(), value).ptr;
+    return *this;
+  }
+  Figure& tenths(double value) {
+    const long scaled = std::lround(std::clamp(value, 0.0, 1e6) * 10);
+    whole(scaled / 10).words(".");
+    return whole(scaled % 10);
+  }
+  Figure& words(std::string_view text) {
+    const auto room = static_cast<std::size_t>(end() - at_);
+    at_ = std::copy_n(text.data(), std::min(text.size(), room), at_);
+    return *this;
+  }
+  std::string_view view() const { return {text_.data(), static_cast<std::size_t>(at_ - text_.data())}; }
+
+ private:
+  char* end() { return text_.data() + text_.size(); }
+  std::array<char, 48> text_{};
+  char* at_ = text_.data();
+};
+
+/// Goes down the column, line by line.
+class Column {
+ public:
+  Column(HudCanvas& canvas, const PanelLayout& layout)
+      : canvas_(canvas),
+        unit_(canvas.scale()),
+        left_(layout.column.x + 28 * unit_),
+        right_(layout.column.x + layout.column.width - 28 * unit_),
+        y_(layout.inset_centre.y + layout.inset_radius_px + 26 * unit_) {}
+
+  void state(std::string_view what, Freshness freshness) {
+    const StateWord state = word_for(freshness);
+    y_ += 40 * unit_;
+    const float middle = y_ - 0.5F * canvas_.font().cap_height_px(TextStyle::headline);
+    canvas_.disc({left_ + 11 * unit_, middle}, 11 * unit_, state.colour);
+    canvas_.text({left_ + 36 * unit_, y_}, TextStyle::headline, state.colour, state.word);
+    canvas_.text_ending({right_, y_}, TextStyle::fine, kQuiet, what);
+    y_ += 10 * unit_;
+  }
+
+  void pill(std::string_view text, Colour colour) {
+    const float height = 36 * unit_;
+    y_ += 8 * unit_;
+    canvas_.box({left_, y_, right_ - left_, height}, 8 * unit_, colour);
+    const float base = y_ + 0.5F * (height + canvas_.font().cap_height_px(TextStyle::strong));
+    canvas_.text_centred({0.5F * (left_ + right_), base}, TextStyle::strong, kDark, text);
+    y_ += height;
+  }
+
+  void rule() {
+    y_ += 16 * unit_;
+    canvas_.stroke({.from = {left_, y_}, .to = {right_, y_}, .width_px = std::max(1.0F, unit_)}, kLine);
+  }
+
+  void figure(std::string_view what, std::string_view value, Colour colour) {
+    y_ += 33 * unit_;
+    canvas_.text({left_, y_}, TextStyle::fine, kQuiet, what);
+    canvas_.text_ending({right_, y_}, TextStyle::strong, colour, value);
+  }
+
+ private:
+  HudCanvas& canvas_;
+  float unit_, left_, right_, y_;
+};
+
+void draw_inset_frame(HudCanvas& canvas, const PanelLayout& layout, const Status& status,
+                      InsetContent inset) {
+  const float unit = canvas.scale();
+  const float radius = layout.inset_radius_px;
+  if (inset == InsetContent::blank) {
+    canvas.disc(layout.inset_centre, radius, kDark);
+    const float y = layout.inset_centre.y;
+    canvas.text_centred({layout.inset_centre.x, y - 4 * unit}, TextStyle::strong, kBad, "NO LIVE");
+    canvas.text_centred({layout.inset_centre.x, y + 28 * unit}, TextStyle::strong, kBad, "VIDEO");
+  }
+  const Colour state = inset == InsetContent::blank ? kBad : word_for(status.video).colour;
+  canvas.ring(layout.inset_centre, radius + 4 * unit, 4 * unit, status.capture_acknowledged ? kInk : state);
+  if (status.capture_acknowledged) canvas.ring(layout.inset_centre, radius + 10 * unit, 10 * unit, kInk);
+}
+
+void draw_column(HudCanvas& canvas, const PanelLayout& layout, const Status& status) {
+  Column column(canvas, layout);
+  column.state("video", status.video);
+  column.state("tracker", status.tracker);
+  if (!status.tool_seen) column.pill("TOOL NOT SEEN", kWarn);
+  if (!status.reference_seen) column.pill("REFERENCE NOT SEEN", kWarn);
+  if (status.degraded) column.pill("DEGRADED", kWarn);
+  column.rule();
+  const Colour late = status.late_frames > 0 ? kWarn : kInk;
+  column.figure("captures", Figure().whole(status.captures).view(), kInk);
+  column.figure("surface painted", Figure().tenths(100.0 * status.coverage).words(" %").view(), kInk);
+  column.figure("latency", Figure().tenths(status.latency_ms).words(" ms").view(), kInk);
+  column.figure("late frames", Figure().whole(status.late_frames).view(), late);
+}
+
+/// A line of words in a box of its own, centred on x, its top at y.
+void draw_banner(HudCanvas& canvas, HudPoint top, Colour ground, std::string_view text) {
+  const float unit = canvas.scale();
+  const float width = canvas.font().width_px(TextStyle::strong, text) + 56 * unit, height = 52 * unit;
+  canvas.box({top.x - 0.5F * width, top.y, width, height}, 10 * unit, ground);
+  const float base = top.y + 0.5F * (height + canvas.font().cap_height_px(TextStyle::strong));
+  canvas.text_centred({top.x, base}, TextStyle::strong, kDark, text);
+}
+
+Colour ground_for(Notice::Level level) {
+  if (level == Notice::Level::alarm) return kBad;
+  return level == Notice::Level::warning ? kWarn : kCalm;
+}
+
+void draw_banners(HudCanvas& canvas, const HudBox& view, const Status& status) {
+  const float unit = canvas.scale(), x = view.x + 0.5F * view.width;
+  if (status.capture_acknowledged) {
+    draw_banner(canvas, {x, view.y + 24 * unit}, kInk, "CAPTURE ACKNOWLEDGED");
+  } else if (status.streaming) {
+    draw_banner(canvas, {x, view.y + 24 * unit}, kGood, "PAINTING WHILE THE PEDAL IS HELD");
+  }
+  if (status.notice.level == Notice::Level::none) return;
+  const auto& text = status.notice.text;
+  const auto length = static_cast<std::size_t>(std::find(text.begin(), text.end(), '\0') - text.begin());
+  draw_banner(canvas, {x, view.y + view.height - 76 * unit}, ground_for(status.notice.level),
+              {text.data(), length});
+}
+
+void draw_bar(HudCanvas& canvas, const HudBox& bar, const Status& status) {
+  const float unit = canvas.scale();
+  const float base = bar.y + 0.5F * (bar.height + canvas.font().cap_height_px(TextStyle::fine));
+  float x = bar.x + 24 * unit;
+  if (status.simulated) x = canvas.text({x, base}, TextStyle::strong, kWarn, "SIMULATED");
+  canvas.text(
+      {x, base}, TextStyle::fine, kQuiet,
+      status.simulated ? "  -  research use, not a medical device" : "research use, not a medical device");
+  Figure figure;
+  figure.whole(std::lround(status.rendered_hz)).words(" Hz");
+  if (status.software_rendering) figure.words(", software");
+  if (status.budget_misses > 0) figure.words(", over budget ").whole(status.budget_misses);
+  canvas.text_ending({bar.x + bar.width - 24 * unit, base}, TextStyle::fine,
+                     status.budget_misses > 0 ? kWarn : kQuiet, figure.view());
+}
+
+}  // namespace
+
+PanelLayout panel_layout(int width_px, int height_px) noexcept {
+  const auto width = static_cast<float>(width_px), height = static_cast<float>(height_px);
+  const float unit = height / 800.0F;
+  const float column = std::min(344 * unit, 0.45F * width), bar = 48 * unit;
+  const float radius = 0.5F * column - 30 * unit;
+  return {.view = {0, 0, width - column, height - bar},
+          .column = {width - column, 0, column, height - bar},
+          .inset_centre = {width - 0.5F * column, 30 * unit + radius},
+          .inset_radius_px = radius,
+          .bar = {0, height - bar, width, bar}};
+}
+
+void draw_grounds(HudCanvas& canvas, const PanelLayout& layout) noexcept {
+  canvas.box(layout.column, 0, kGround);
+  canvas.box(layout.bar, 0, kGround);
+  const HudBox& bar = layout.bar;
+  canvas.stroke({.from = {bar.x, bar.y}, .to = {bar.x + bar.width, bar.y}, .width_px = 1}, kLine);
+  canvas.stroke({.from = {layout.column.x, 0}, .to = {layout.column.x, bar.y}, .width_px = 1}, kLine);
+}
+
+void draw_status(HudCanvas& canvas, const PanelLayout& layout, const Status& status,
+                 InsetContent inset) noexcept {
+  draw_inset_frame(canvas, layout, status, inset);
+  draw_column(canvas, layout, status);
+  draw_bar(canvas, layout.bar, status);
+  draw_banners(canvas, layout.view, status);
+}
+
+}  // namespace orcart

@@ -1,0 +1,8 @@
+// One fragment per tile of the atlas; one instance per tile to be counted.
+layout(location = 0) in vec4 a_tile;  // tile x y
+uniform float u_grid_size;
+
+void main() {
+  vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1));
+  gl_Position = vec4((a_tile.xy + corner) / u_grid_size * 2.0 - 1.0, 0.0, 1.0);
+}
