@@ -19,8 +19,8 @@ struct Cut {
 
 constexpr char kFolder[] = "/usr/share/fonts/truetype/dejavu/";
 constexpr std::array<Cut, 4> kCuts{{{"DejaVuSans.ttf", 20},
-                                    {"DejaVuSans.ttf", 24},
-                                    {"DejaVuSans-Bold.ttf", 24},
+                                    {"DejaVuSans-Bold.ttf", 22},
+                                    {"DejaVuSans-Bold.ttf", 26},
                                     {"DejaVuSans-Bold.ttf", 38}}};
 
 /// How many bytes follow a first byte of UTF-8; -1 where it can be none.

@@ -15,8 +15,8 @@ namespace orcart {
 /// high.
 enum class TextStyle : std::uint8_t {
   fine,      ///< 20 px
-  body,      ///< 24 px
-  strong,    ///< 24 px, bold
+  strong,    ///< 22 px, bold
+  banner,    ///< 26 px, bold
   headline,  ///< 38 px, bold
 };
 

@@ -132,13 +132,26 @@ void draw_column(HudCanvas& canvas, const PanelLayout& layout, const Status& sta
   column.figure("late frames", Figure().whole(status.late_frames).view(), late);
 }
 
-/// A line of words in a box of its own, centred on x, its top at y.
-void draw_banner(HudCanvas& canvas, HudPoint top, Colour ground, std::string_view text) {
-  const float unit = canvas.scale();
-  const float width = canvas.font().width_px(TextStyle::strong, text) + 56 * unit, height = 52 * unit;
-  canvas.box({top.x - 0.5F * width, top.y, width, height}, 10 * unit, ground);
-  const float base = top.y + 0.5F * (height + canvas.font().cap_height_px(TextStyle::strong));
-  canvas.text_centred({top.x, base}, TextStyle::strong, kDark, text);
+/// As much of a text as is not wider than `widest_px`, whole letters.
+std::string_view fitting(const Font& font, std::string_view text, float widest_px) {
+  while (!text.empty() && font.width_px(TextStyle::banner, text) > widest_px) {
+    bool inside_letter = true;
+    while (inside_letter && !text.empty()) {
+      inside_letter = (static_cast<unsigned char>(text.back()) & 0xC0) == 0x80;
+      text.remove_suffix(1);
+    }
+  }
+  return text;
+}
+
+/// A line of words in a box of its own, centred in the view, its top at y.
+void draw_banner(HudCanvas& canvas, const HudBox& view, float y, Colour ground, std::string_view text) {
+  const float unit = canvas.scale(), x = view.x + 0.5F * view.width, height = 56 * unit;
+  text = fitting(canvas.font(), text, view.width - 80 * unit);
+  const float width = canvas.font().width_px(TextStyle::banner, text) + 56 * unit;
+  canvas.box({x - 0.5F * width, y, width, height}, 10 * unit, ground);
+  const float base = y + 0.5F * (height + canvas.font().cap_height_px(TextStyle::banner));
+  canvas.text_centred({x, base}, TextStyle::banner, kDark, text);
 }
 
 Colour ground_for(Notice::Level level) {
@@ -147,16 +160,16 @@ Colour ground_for(Notice::Level level) {
 }
 
 void draw_banners(HudCanvas& canvas, const HudBox& view, const Status& status) {
-  const float unit = canvas.scale(), x = view.x + 0.5F * view.width;
+  const float unit = canvas.scale(), top = view.y + 24 * unit;
   if (status.capture_acknowledged) {
-    draw_banner(canvas, {x, view.y + 24 * unit}, kInk, "CAPTURE ACKNOWLEDGED");
+    draw_banner(canvas, view, top, kInk, "CAPTURE ACKNOWLEDGED");
   } else if (status.streaming) {
-    draw_banner(canvas, {x, view.y + 24 * unit}, kGood, "PAINTING WHILE THE PEDAL IS HELD");
+    draw_banner(canvas, view, top, kGood, "PAINTING WHILE THE PEDAL IS HELD");
   }
   if (status.notice.level == Notice::Level::none) return;
   const auto& text = status.notice.text;
   const auto length = static_cast<std::size_t>(std::find(text.begin(), text.end(), '\0') - text.begin());
-  draw_banner(canvas, {x, view.y + view.height - 76 * unit}, ground_for(status.notice.level),
+  draw_banner(canvas, view, view.y + view.height - 80 * unit, ground_for(status.notice.level),
               {text.data(), length});
 }
 

@@ -37,16 +37,16 @@ TEST(Font, KernsCapitalsThatLeanIntoEachOther) {
 }
 
 TEST(Font, MeasuresALineAsItsLettersWithKerning) {
-  const float separate = font().width_px(TextStyle::body, "A") + font().width_px(TextStyle::body, "V");
-  EXPECT_FLOAT_EQ(font().width_px(TextStyle::body, "AV"),
-                  separate + font().kerning_px(TextStyle::body, 'A', 'V'));
-  EXPECT_EQ(font().width_px(TextStyle::body, ""), 0.0F);
+  const float separate = font().width_px(TextStyle::fine, "A") + font().width_px(TextStyle::fine, "V");
+  EXPECT_FLOAT_EQ(font().width_px(TextStyle::fine, "AV"),
+                  separate + font().kerning_px(TextStyle::fine, 'A', 'V'));
+  EXPECT_EQ(font().width_px(TextStyle::fine, ""), 0.0F);
 }
 
 TEST(Font, HasInkForLettersAndNoneForASpace) {
-  EXPECT_GT(font().glyph(TextStyle::body, U'g').width, 5);
-  EXPECT_EQ(font().glyph(TextStyle::body, U' ').width, 0);
-  EXPECT_EQ(font().glyph(TextStyle::body, U'\x4E2D').x, font().glyph(TextStyle::body, U'?').x);
+  EXPECT_GT(font().glyph(TextStyle::fine, U'g').width, 5);
+  EXPECT_EQ(font().glyph(TextStyle::fine, U' ').width, 0);
+  EXPECT_EQ(font().glyph(TextStyle::fine, U'\x4E2D').x, font().glyph(TextStyle::fine, U'?').x);
   const Glyph& w = font().glyph(TextStyle::strong, U'W');
   int ink = 0;
   for (int y = 0; y < w.height; ++y)
@@ -58,7 +58,7 @@ TEST(Font, HasInkForLettersAndNoneForASpace) {
 TEST(Font, GrowsWithTheScale) {
   const auto twice = Font::create(2.0);
   ASSERT_TRUE(twice.has_value());
-  EXPECT_NEAR(twice->cap_height_px(TextStyle::fine), 2 * font().cap_height_px(TextStyle::fine), 1.0F);
+  EXPECT_NEAR(twice->cap_height_px(TextStyle::fine), 2 * font().cap_height_px(TextStyle::fine), 2.0F);
 }
 
 }  // namespace
