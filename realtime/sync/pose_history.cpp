@@ -1,0 +1,88 @@
+// Finds the two complete samples next to an instant and says what they allow to be said.
+#include "realtime/sync/pose_history.hpp"
+
+#include <algorithm>
+
+namespace orcart {
+namespace {
+
+double fraction_of(Instant t, const PoseSample& from, const PoseSample& to) {
+  return seconds(t - from.measured_at) / seconds(to.measured_at - from.measured_at);
+}
+
+}  // namespace
+
+PoseHistory::PoseHistory(const PoseHistorySettings& settings)
+    : settings_(settings), ring_(std::max<std::size_t>(2, settings.capacity)) {}
+
+bool PoseHistory::push(const PoseSample& sample) noexcept {
+  const bool falls = size_ > 0 && sample.measured_at <= newest();
+  if (falls || sample.measured_at > sample.arrived_at) {
+    ++refused_;
+    return false;
+  }
+  ring_[next_] = sample;
+  next_ = (next_ + 1) % ring_.size();
+  size_ = std::min(size_ + 1, ring_.size());
+  return true;
+}
+
+PoseHistory::Neighbours PoseHistory::neighbours(Instant t) const noexcept {
+  Neighbours found;
+  for (std::size_t age = 0; age < size_; ++age) {
+    const PoseSample& sample = back(age);
+    if (!sample.complete()) continue;
+    if (sample.measured_at <= t) {
+      found.before = &sample;
+      break;
+    }
+    found.after = &sample;
+  }
+  return found;
+}
+
+PoseAnswer PoseHistory::at(Instant t) const noexcept {
+  const auto [before, after] = neighbours(t);
+  const Nanos since = before != nullptr ? t - before->measured_at : Nanos::max();
+  const Nanos until = after != nullptr ? after->measured_at - t : Nanos::max();
+  const PoseSample* nearest = since <= until ? before : after;
+  const Nanos distance = std::min(since, until);
+  if (nearest == nullptr) return {};
+  if (distance <= settings_.exact_within)
+    return {.kind = PoseKind::exact, .X_RS = nearest->X_RS(), .distance = distance};
+  if (before == nullptr) return {};
+  if (after == nullptr) return predict(*before, t);
+  if (after->measured_at - before->measured_at > longest_gap()) return {};
+  return {.kind = PoseKind::interpolated,
+          .X_RS = interpolate(before->X_RS(), after->X_RS(), fraction_of(t, *before, *after)),
+          .distance = distance};
+}
+
+PoseAnswer PoseHistory::predict(const PoseSample& last, Instant t) const noexcept {
+  const Nanos distance = t - last.measured_at;
+  if (&last != &back(0) || distance > settings_.longest_prediction) return {};
+  PoseAnswer answer{.kind = PoseKind::predicted, .X_RS = last.X_RS(), .distance = distance};
+  const PoseSample* earlier = neighbours(last.measured_at - Nanos{1}).before;
+  if (earlier != nullptr && last.measured_at - earlier->measured_at <= longest_gap())
+    answer.X_RS = interpolate(earlier->X_RS(), answer.X_RS, fraction_of(t, *earlier, last));
+  return answer;
+}
+
+bool PoseHistory::decided(Instant t) const noexcept {
+  if (at(t).may_paint()) return true;
+  if (newest() <= t + settings_.exact_within) return false;
+  const PoseSample* before = neighbours(t).before;
+  return before == nullptr || newest() - before->measured_at >= longest_gap();
+}
+
+bool PoseHistory::sampled_around(Instant t) const noexcept {
+  const Nanos reach = settings_.period + settings_.period / 10;
+  Nanos since = Nanos::max(), until = Nanos::max();
+  for (std::size_t age = 0; age < size_ && since == Nanos::max(); ++age) {
+    const Instant measured_at = back(age).measured_at;
+    (measured_at <= t ? since : until) = measured_at <= t ? t - measured_at : measured_at - t;
+  }
+  return since <= reach && until <= reach;
+}
+
+}  // namespace orcart

@@ -1,0 +1,64 @@
+// The tracker's last samples in a fixed ring, and where the scope was in the patient's reference at an
+// instant.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "realtime/sync/pose_sample.hpp"
+
+namespace orcart {
+
+struct PoseHistorySettings {
+  Nanos period{};                   ///< of the samples as they are polled
+  Nanos exact_within = 200us;       ///< a sample this near is the answer as it stands
+  Nanos longest_prediction = 50ms;  ///< beyond the newest sample nothing is said after this
+  std::size_t capacity = 128;
+};
+
+/// One thread. Memory is taken in the constructor only.
+class PoseHistory {
+ public:
+  explicit PoseHistory(const PoseHistorySettings& settings);
+
+  /// Samples must rise in measured_at and not be from after their own arrival: else refused, counted and
+  /// false.
+  bool push(const PoseSample& sample) noexcept;
+
+  /// Interpolates X_RS, never X_TS: the sensor's own movement drops out. `interpolated` only between complete
+  /// samples at most 2 periods apart (one may be missing between them); `predicted` goes on with the velocity
+  /// of the last two complete samples, and only where the newest sample is complete.
+  PoseAnswer at(Instant t) const noexcept;
+
+  /// No sample still to come can make at(t) a pose that may paint, or turn it into another one.
+  bool decided(Instant t) const noexcept;
+
+  /// There are samples within a period of t on both sides: where at(t) is none, a tool was not seen.
+  bool sampled_around(Instant t) const noexcept;
+
+  /// measured_at of the newest sample, complete or not; Instant{} before the first.
+  Instant newest() const noexcept { return size_ == 0 ? Instant{} : back(0).measured_at; }
+  std::uint32_t refused() const noexcept { return refused_; }
+
+ private:
+  /// The complete samples next to an instant; null where there is none.
+  struct Neighbours {
+    const PoseSample* before = nullptr;  ///< the last one not after the instant
+    const PoseSample* after = nullptr;   ///< the first one after it
+  };
+  const PoseSample& back(std::size_t age) const noexcept {
+    return ring_[(next_ + ring_.size() - 1 - age) % ring_.size()];
+  }
+  Neighbours neighbours(Instant t) const noexcept;
+  PoseAnswer predict(const PoseSample& last, Instant t) const noexcept;
+  /// Stamps come off a fitted line: a tenth of a period is more than it moves between two samples.
+  Nanos longest_gap() const noexcept { return settings_.period * 2 + settings_.period / 10; }
+
+  PoseHistorySettings settings_;
+  std::vector<PoseSample> ring_;
+  std::size_t next_ = 0, size_ = 0;
+  std::uint32_t refused_ = 0;
+};
+
+}  // namespace orcart
