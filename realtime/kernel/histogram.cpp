@@ -8,9 +8,6 @@
 namespace orcart {
 namespace {
 
-using histogram_buckets::kBitsPerOctave;
-using histogram_buckets::kTopBit;
-
 // One writer: load and store need not be one step.
 template <class Number>
 void add(std::atomic<Number>& to, Number what) noexcept {
