@@ -2,6 +2,7 @@
 #include "realtime/geometry/ray_scene.hpp"
 
 #include <array>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -69,6 +70,14 @@ TEST_F(RaySceneTest, MarksMissedRaysOfMany) {
   rays_.nearest_many({0, 0, 0}, directions, 100, hits);
   EXPECT_GT(hits[0].distance_mm, 10);
   EXPECT_LT(hits[1].distance_mm, 0);
+}
+
+TEST_F(RaySceneTest, MeetsNothingAlongARayThatIsNotANumber) {
+  EXPECT_FALSE(rays_.nearest({0, NAN, 0}, Eigen::Vector3f::UnitZ(), 100));
+  EXPECT_FALSE(rays_.nearest({0, 0, 0}, {0, 0, INFINITY}, 100));
+  EXPECT_FALSE(rays_.nearest({0, 0, 0}, Eigen::Vector3f::UnitZ(), NAN));
+  EXPECT_FALSE(rays_.hidden({0, 1, 0}, {0, NAN, 20}, 0.05F));
+  EXPECT_FALSE(rays_.hidden({0, 1, 0}, {0, INFINITY, 20}, 0.05F));
 }
 
 TEST(RayScene, RefusesAMeshWithoutTriangles) {
