@@ -5,7 +5,10 @@ our_sources() {
 }
 
 check_format() {
-  (cd "$ORCART_ROOT" && our_sources | xargs clang-format --dry-run --Werror)
+  local unformatted
+  unformatted=$(cd "$ORCART_ROOT" && our_sources | xargs clang-format --dry-run --Werror 2>&1 |
+    sed -n 's/^\([^ :]*\):[0-9]*:[0-9]*: error: .*/\1/p' | sort -u)
+  [ -z "$unformatted" ] || { say "run clang-format -i on:" $unformatted && return 1; }
 }
 
 # check_tidy SECONDS: the sources changed last come first, so that what is new is always looked at.
