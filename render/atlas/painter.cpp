@@ -1,4 +1,5 @@
-// A paint pass: depth of the cutout from the scope, then one quad per touched chart through the paint shader.
+// A paint pass: depth of the cutout from the scope, then one quad per touched cell of the atlas through the
+// paint shader.
 #include "render/atlas/painter.hpp"
 
 #include <algorithm>
@@ -15,7 +16,9 @@
 namespace orcart {
 namespace {
 
-constexpr int kMaskRow = 2048;  // words in a row of the paper mode's triangle mask
+constexpr int kMaskRow = 2048;   // words in a row of the paper mode's triangle mask
+constexpr int kCellTexels = 16;  // what is painted is drawn in squares of this size
+static_assert(kTileTexels % kCellTexels == 0);
 
 struct PaintUniforms {
   GLint rotation, translation, paper, tip, view, up, side, paper_size, cos_cone;
@@ -72,9 +75,9 @@ struct Painter::State {
   PaintUniforms uniforms{};
   gles::PictureTexture::Uniforms picture_uniforms{};
 
-  std::vector<std::uint32_t> seen_chart, seen_tile;  ///< epoch of the view that touched it last
-  std::uint32_t epoch = 0;
-  std::vector<std::uint32_t> charts;  ///< of the view, in order; painted up to `painted`
+  std::vector<std::uint32_t> seen_cell, seen_tile;  ///< epoch of the view, or step, that touched it last
+  std::uint32_t epoch = 0, cells_per_row = 0;
+  std::vector<std::uint32_t> cells;  ///< of the view, in order; painted up to `painted`
   std::size_t painted = 0;
   std::vector<std::uint32_t> tiles;
   std::vector<ChartRect> quads;
@@ -88,7 +91,8 @@ struct Painter::State {
   Result<void> make_program();
   Result<void> make_atlas(const Surface& surface);
   void collect(const CutoutPatch& patch) noexcept;
-  void collect_tiles(const ChartRect& rect) noexcept;
+  void collect_cells(std::uint32_t triangle) noexcept;
+  void collect_tile(std::uint32_t cell) noexcept;
   void set_view() noexcept;
   void bind_textures() noexcept;
   PaintReport paint_some() noexcept;
@@ -116,8 +120,9 @@ Result<void> Painter::State::make_program() {
               static_cast<float>(scope.fall_off.vignetting_cos_power), 0, 0);
   const Eigen::Vector4f frame = paper_frame_of(scope);
   glUniform4fv(at("u_paper_frame"), 1, frame.data());
-  const char* units[] = {"u_owner", "u_weights", "u_triangles", "u_vertices", "u_depth", "u_mask"};
-  for (int unit_number = 0; unit_number < 6; ++unit_number) glUniform1i(at(units[unit_number]), unit_number);
+  const char* units[] = {"u_owner", "u_weights", "u_triangles", "u_vertices",
+                         "u_depth", "u_mask",    "u_points"};
+  for (int unit_number = 0; unit_number < 7; ++unit_number) glUniform1i(at(units[unit_number]), unit_number);
   uniforms = {at("u_rotation_CM"), at("u_translation_CM"), at("u_paper"),      at("u_tip"),     at("u_view"),
               at("u_up"),          at("u_side"),           at("u_paper_size"), at("u_cos_cone")};
   picture_uniforms = gles::PictureTexture::uniforms_of(program);
@@ -139,8 +144,9 @@ Result<void> Painter::State::make_atlas(const Surface& from) {
 
   vertex_array = gles::make_vertex_array();
   glBindVertexArray(vertex_array.id());
-  rects =
-      gles::make_buffer(GL_ARRAY_BUFFER, layout->charts.size() * sizeof(ChartRect), nullptr, GL_STREAM_DRAW);
+  cells_per_row = static_cast<std::uint32_t>(layout->width_texels / kCellTexels);
+  const std::size_t cell_count = static_cast<std::size_t>(cells_per_row) * cells_per_row;
+  rects = gles::make_buffer(GL_ARRAY_BUFFER, cell_count * sizeof(ChartRect), nullptr, GL_STREAM_DRAW);
   glEnableVertexAttribArray(0);
   glVertexAttribPointer(0, 4, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(ChartRect), nullptr);
   glVertexAttribDivisor(0, 1);
@@ -148,10 +154,10 @@ Result<void> Painter::State::make_atlas(const Surface& from) {
 
   const std::size_t tile_count = static_cast<std::size_t>(layout->width_texels / kTileTexels) *
                                  static_cast<std::size_t>(layout->height_texels / kTileTexels);
-  seen_chart.assign(layout->charts.size(), 0);
+  seen_cell.assign(cell_count, 0);
   seen_tile.assign(tile_count, 0);
-  charts.reserve(layout->charts.size());
-  quads.reserve(layout->charts.size());
+  cells.reserve(cell_count);
+  quads.reserve(cell_count);
   tiles.reserve(tile_count);
   auto store = UndoStore::create(kept(), settings.undo_units);
   if (!store) return tl::unexpected(store.error());
@@ -194,24 +200,42 @@ bool Painter::upload(const ImageDescriptor& image) noexcept {
   return state_->picture[0].upload(image);
 }
 
-void Painter::State::collect_tiles(const ChartRect& rect) noexcept {
-  const std::uint32_t per_row = static_cast<std::uint32_t>(layout->width_texels / kTileTexels);
-  for (std::uint32_t y = rect.y / kTileTexels;
-       y <= static_cast<std::uint32_t>(rect.y + rect.height - 1) / kTileTexels; ++y) {
-    for (std::uint32_t x = rect.x / kTileTexels;
-         x <= static_cast<std::uint32_t>(rect.x + rect.width - 1) / kTileTexels; ++x) {
-      const std::uint32_t tile = y * per_row + x;
-      if (seen_tile[tile] == epoch) continue;
-      seen_tile[tile] = epoch;
-      tiles.push_back(tile);
+/// The cells that hold a triangle's own texels and its gutter.
+void Painter::State::collect_cells(std::uint32_t triangle) noexcept {
+  constexpr float kGutter = 3;
+  const auto& corners = layout->corners_texels[triangle];
+  const ChartRect& rect = layout->charts[layout->chart_of_triangle[triangle]];
+  const auto cell = [&](float texel, int first, int extent) {
+    return static_cast<std::uint32_t>(std::clamp(static_cast<int>(texel), first, first + extent - 1)) /
+           kCellTexels;
+  };
+  const Eigen::Vector2f low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]).array() - kGutter;
+  const Eigen::Vector2f high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]).array() + kGutter;
+  const std::uint32_t x0 = cell(low.x(), rect.x, rect.width), x1 = cell(high.x(), rect.x, rect.width);
+  const std::uint32_t y0 = cell(low.y(), rect.y, rect.height), y1 = cell(high.y(), rect.y, rect.height);
+  for (std::uint32_t y = y0; y <= y1; ++y) {  // bound: a chart's extent
+    for (std::uint32_t x = x0; x <= x1; ++x) {
+      const std::uint32_t number = y * cells_per_row + x;
+      if (seen_cell[number] == epoch) continue;
+      seen_cell[number] = epoch;
+      cells.push_back(number);
     }
   }
+}
+
+void Painter::State::collect_tile(std::uint32_t cell) noexcept {
+  constexpr std::uint32_t kCellsPerTile = kTileTexels / kCellTexels;
+  const std::uint32_t tile = cell / cells_per_row / kCellsPerTile * (cells_per_row / kCellsPerTile) +
+                             cell % cells_per_row / kCellsPerTile;
+  if (seen_tile[tile] == epoch) return;
+  seen_tile[tile] = epoch;
+  tiles.push_back(tile);
 }
 
 void Painter::State::collect(const CutoutPatch& patch) noexcept {
   if (patch.first_part) {
     ++epoch;
-    charts.clear();
+    cells.clear();
     painted = 0;
     X_CM = patch.X_MC.inverse();
     mode = patch.mode;
@@ -220,10 +244,7 @@ void Painter::State::collect(const CutoutPatch& patch) noexcept {
   }
   for (const std::uint32_t triangle : patch.triangles) {
     if (mode == TextureMode::paper) mask_words[triangle >> 5] |= 1u << (triangle & 31);
-    const std::uint32_t chart = layout->chart_of_triangle[triangle];
-    if (seen_chart[chart] == epoch) continue;
-    seen_chart[chart] = epoch;
-    charts.push_back(chart);
+    collect_cells(triangle);
   }
 }
 
@@ -251,17 +272,17 @@ PaintReport Painter::State::paint_some() noexcept {
   quads.clear();
   tiles.clear();
   ++epoch;  // tiles are told apart from those of the step before
-  for (; painted < charts.size(); ++painted) {
-    const ChartRect& rect = layout->charts[charts[painted]];
-    const std::uint32_t texels = static_cast<std::uint32_t>(rect.width) * rect.height;
-    if (!quads.empty() && report.texels + texels > settings.max_texels_per_step) break;
-    report.texels += texels;
-    quads.push_back(rect);
-    collect_tiles(rect);
+  constexpr std::uint32_t kTexelsOfCell = kCellTexels * kCellTexels;
+  for (; painted < cells.size() && report.texels + kTexelsOfCell <= settings.max_texels_per_step; ++painted) {
+    const std::uint32_t cell = cells[painted];
+    report.texels += kTexelsOfCell;
+    quads.push_back({static_cast<std::uint16_t>(cell % cells_per_row * kCellTexels),
+                     static_cast<std::uint16_t>(cell / cells_per_row * kCellTexels), kCellTexels,
+                     kCellTexels});
+    collect_tile(cell);
   }
-  report.charts = static_cast<std::uint32_t>(quads.size());
   report.painted = !quads.empty();
-  report.carried = painted < charts.size();
+  report.carried = painted < cells.size();
   if (!report.painted) return report;
   undo[0].keep(unit, tiles);
   coverage[0].touch(tiles);
@@ -294,12 +315,13 @@ void Painter::State::set_view() noexcept {
 
 void Painter::State::bind_textures() noexcept {
   const GLuint textures[] = {surface.owner.id(),    surface.weights.id(), surface.triangles.id(),
-                             surface.vertices.id(), depth[0].texture(),   mask.id()};
-  for (GLenum i = 0; i < 6; ++i) {
+                             surface.vertices.id(), depth[0].texture(),   mask.id(),
+                             surface.points.id()};
+  for (GLenum i = 0; i < 7; ++i) {
     glActiveTexture(GL_TEXTURE0 + i);
     glBindTexture(GL_TEXTURE_2D, textures[i]);
   }
-  picture[0].bind(picture_uniforms, 6);
+  picture[0].bind(picture_uniforms, 7);
   glActiveTexture(GL_TEXTURE0);
 }
 

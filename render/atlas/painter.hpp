@@ -17,8 +17,8 @@ namespace orcart {
 
 struct PainterSettings {
   SeenFrom seen_from = SeenFrom::outside;
-  int undo_units = 16;  ///< how many units can be taken back
-  std::uint32_t max_texels_per_step = 1'500'000;
+  int undo_units = 16;                            ///< how many units can be taken back
+  std::uint32_t max_texels_per_step = 1'500'000;  ///< at least a cell of 16 x 16
   double max_obliquity_rad = 1.3963;
   bool even_out_light = false;  ///< compensate ScopeModel::fall_off
 };

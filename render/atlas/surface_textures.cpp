@@ -1,9 +1,11 @@
 // Uploads the static textures of a surface; runs once.
 #include "render/atlas/surface_textures.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace orcart {
 namespace {
@@ -39,10 +41,43 @@ gles::Texture weight_texture(const AtlasLayout& layout) {
   return texture;
 }
 
+gles::Texture point_texture(const TriangleMesh& mesh, const AtlasLayout& layout) {
+  std::vector<float> points(layout.owners.size() * 4, 0);
+  for (std::size_t i = 0; i < layout.owners.size(); ++i) {
+    const TexelOwner& owner = layout.owners[i];
+    if (owner.triangle == 0xFFFFFFFF) continue;
+    const auto& corners = mesh.triangles[owner.triangle];
+    const Eigen::Vector3f a = mesh.vertices_mm[corners[0]], ab = mesh.vertices_mm[corners[1]] - a,
+                          ac = mesh.vertices_mm[corners[2]] - a;
+    const Eigen::Vector3f p = a + owner.b1 * ab + owner.b2 * ac;
+    std::copy_n(p.data(), 3, &points[4 * i]);
+    points[4 * i + 3] = pack_normal(ab.cross(ac).normalized());
+  }
+  auto texture = gles::make_texture({GL_RGBA32F, layout.width_texels, layout.height_texels});
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, layout.width_texels, layout.height_texels, GL_RGBA, GL_FLOAT,
+                  points.data());
+  return texture;
+}
+
 }  // namespace
 
+float pack_normal(const Eigen::Vector3f& normal) {
+  const float sum = normal.cwiseAbs().sum();
+  if (!(sum > 0)) return 0;
+  float u = normal.x() / sum, v = normal.y() / sum;
+  if (normal.z() < 0) {
+    const float folded_u = (1 - std::abs(v)) * (u < 0 ? -1.0f : 1.0f),
+                folded_v = (1 - std::abs(u)) * (v < 0 ? -1.0f : 1.0f);
+    u = folded_u;
+    v = folded_v;
+  }
+  return std::round((u * 0.5f + 0.5f) * 2047) * 2048 + std::round((v * 0.5f + 0.5f) * 2047);
+}
+
 SurfaceTextures make_surface_textures(const TriangleMesh& mesh, const AtlasLayout& layout) {
-  SurfaceTextures textures{.owner = owner_texture(layout), .weights = weight_texture(layout)};
+  SurfaceTextures textures{.owner = owner_texture(layout),
+                           .points = point_texture(mesh, layout),
+                           .weights = weight_texture(layout)};
 
   const int triangle_rows = rows_for(mesh.triangles.size());
   std::vector<std::uint32_t> corners(static_cast<std::size_t>(triangle_rows) * kRow * 4, 0);

@@ -10,10 +10,16 @@ namespace orcart {
 struct SurfaceTextures {
   gles::Texture
       owner;  ///< R32UI, atlas size: triangle, bit 31 where the centre lies inside it; 0x7FFFFFFF nothing
+  gles::Texture
+      points;  ///< RGBA32F, atlas size: the point behind the texel, M, mm; the normal in w, see pack_normal
   gles::Texture weights;    ///< RG16F, atlas size: barycentric weights of corners 1 and 2
   gles::Texture triangles;  ///< RGBA32UI, row-wrapped: the three vertices
   gles::Texture vertices;   ///< RGBA32F, row-wrapped: positions in M, mm
 };
+
+/// A unit vector as one float: octahedral coordinates (Meyer et al. 2010), 11 bits each, error below 0.06
+/// degrees.
+float pack_normal(const Eigen::Vector3f& normal);
 
 SurfaceTextures make_surface_textures(const TriangleMesh& mesh, const AtlasLayout& layout);
 

@@ -1,6 +1,7 @@
 // One texel: which point of the surface it is, whether the scope sees that point, and what colour it shows there.
 uniform usampler2D u_owner;      // triangle number, bit 31: inside its triangle; 0x7FFFFFFF: nothing
-uniform sampler2D u_weights;     // barycentric weights of corners 1 and 2
+uniform sampler2D u_points;      // the point behind the texel, M, mm; its triangle's normal in w
+uniform sampler2D u_weights;     // barycentric weights of corners 1 and 2; for paper, as are the next two
 uniform usampler2D u_triangles;  // the three vertex numbers
 uniform sampler2D u_vertices;    // positions in M, mm
 uniform sampler2D u_depth;       // what the scope sees, by a pinhole of tangent u_depth_tangent
@@ -75,15 +76,23 @@ vec2 paper_st(vec3 v) {
   return vec2(0.5) + vec2(h * sin(phi), h * cos(phi)) / u_paper_size;
 }
 
+vec3 unpacked_normal(float packed_normal) {
+  vec2 e = vec2(floor(packed_normal / 2048.0), mod(packed_normal, 2048.0)) / 2047.0 * 2.0 - 1.0;
+  vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+  float fold = max(-n.z, 0.0);
+  n.xy += vec2(n.x >= 0.0 ? -fold : fold, n.y >= 0.0 ? -fold : fold);
+  return normalize(n);
+}
+
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   uint owner = texelFetch(u_owner, texel, 0).r & 0x7FFFFFFFu;
   if (owner == 0x7FFFFFFFu) discard;
-  uvec3 c = corners_of(owner);
-  vec3 a = vertex(c.x), b = vertex(c.y), d = vertex(c.z);
-  vec2 weights = texelFetch(u_weights, texel, 0).rg;
 
   if (u_paper == 1) {
+    uvec3 c = corners_of(owner);
+    vec3 a = vertex(c.x), b = vertex(c.y), d = vertex(c.z);
+    vec2 weights = texelFetch(u_weights, texel, 0).rg;
     uint width = uint(textureSize(u_mask, 0).x);
     uint word = texelFetch(u_mask, ivec2(int((owner >> 5) % width), int((owner >> 5) / width)), 0).r;
     if ((word >> (owner & 31u) & 1u) == 0u) discard;
@@ -97,10 +106,11 @@ void main() {
     return;
   }
 
-  vec3 p = u_rotation_CM * (a + weights.x * (b - a) + weights.y * (d - a)) + u_translation_CM;
+  vec4 point = texelFetch(u_points, texel, 0);
+  vec3 p = u_rotation_CM * point.xyz + u_translation_CM;
   float distance_mm = length(p);
   if (p.z <= 0.05 || distance_mm > u_far_mm || p.z < u_cos_cone * distance_mm) discard;
-  vec3 normal = u_rotation_CM * normalize(cross(b - a, d - a)) * u_facing;
+  vec3 normal = u_rotation_CM * unpacked_normal(point.w) * u_facing;
   if (-dot(normal, p) < u_cos_obliquity * distance_mm) discard;
   vec2 pixel = lens_pixel(p);
   float weight = mask_weight(pixel);

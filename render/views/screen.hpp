@@ -1,4 +1,4 @@
-// The whole panel picture: painted surface, scope outline, live inset, status line, SIMULATED mark.
+// The whole panel picture: painted surface, scope outline, live inset, status, SIMULATED mark.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,14 @@
 #include "render/atlas/atlas_layout.hpp"
 #include "render/atlas/painter.hpp"
 #include "render/hud/status.hpp"
+#include "render/views/eye.hpp"
 
 namespace orcart {
-
-/// Where the eye is, in M. The field of view is vertical.
-struct Eye {
-  Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();
-  Eigen::Vector3d target_mm = Eigen::Vector3d::Zero();
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  double field_of_view_rad = 0.6;
-};
-
-/// An eye that sees the whole surface from a direction (unit vector from the surface's centre to the eye).
-Eye eye_on(const TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen::Vector3d& up);
 
 struct ScreenSettings {
   int width_px = 1280, height_px = 800;
   SeenFrom seen_from =
-      SeenFrom::outside;  ///< inside: the wall nearest to the eye is left out, so that one looks in
+      SeenFrom::outside;  ///< inside: the wall nearest to the eye is a glass shell, so that one looks in
 };
 
 /// What changes from picture to picture.
@@ -52,8 +42,8 @@ class Screen {
   Screen& operator=(Screen&&) noexcept;
   ~Screen();
 
-  /// Draws into `target` (CPU xrgb8888 or rgba8888 of the settings' size, or a dma-buf that can be imported).
-  void draw(const ScreenState& state, const Painter& painter, const ImageDescriptor& target) noexcept;
+  /// Draws into `target`: CPU memory, xrgb8888 or rgba8888, of the settings' size. False where it is neither.
+  bool draw(const ScreenState& state, const Painter& painter, const ImageDescriptor& target) noexcept;
 
  private:
   struct State;

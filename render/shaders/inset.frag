@@ -1,0 +1,14 @@
+// The live picture, its circle filling the inset.
+in vec2 v_place;
+uniform vec4 u_circle;     // of the picture: centre x y, radius; px
+uniform float u_aspect;    // fx / fy
+uniform float u_radius_px; // of the inset on the panel
+out vec4 o_colour;
+
+void main() {
+  float r = length(v_place);
+  float cover = clamp((1.0 - r) * u_radius_px, 0.0, 1.0);
+  if (cover <= 0.0) discard;
+  vec2 pixel = u_circle.xy + v_place * vec2(1.0, 1.0 / u_aspect) * u_circle.z;
+  o_colour = vec4(picture_at(pixel), cover);
+}

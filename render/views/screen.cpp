@@ -1,0 +1,167 @@
+// Layers: the kept view of the surface, the scope over it, the inset, the words; then out to the panel's
+// buffer.
+#include "render/views/screen.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <GLES3/gl31.h>
+
+#include <GLES2/gl2ext.h>
+
+#include "render/gles/picture_texture.hpp"
+#include "render/hud/status_panel.hpp"
+#include "render/shaders/shaders.hpp"
+#include "render/views/scope_outline.hpp"
+#include "render/views/surface_view.hpp"
+
+namespace orcart {
+
+struct Screen::State {
+  ScreenSettings settings;
+  ScopeModel scope;
+  PanelLayout layout;
+  std::vector<SurfaceView> view;  ///< exactly one
+  std::vector<HudCanvas> canvas;  ///< exactly one
+  gles::Texture picture;
+  gles::Framebuffer framebuffer;
+  gles::Program inset;
+  gles::VertexArray no_attributes;
+  gles::PictureTexture::Uniforms picture_uniforms{};
+  Eye drawn_eye;
+  std::uint64_t drawn_version = 0;
+  bool drawn = false;
+  bool reads_bgra = false;
+
+  Result<void> make_inset();
+  void draw_inset(const gles::PictureTexture& live) noexcept;
+  bool read_into(const ImageDescriptor& target) noexcept;
+};
+
+Result<void> Screen::State::make_inset() {
+  auto program = gles::make_program("inset", shaders::inset_vert,
+                                    std::string(shaders::picture_glsl) + shaders::inset_frag);
+  if (!program) return tl::unexpected(program.error());
+  inset = std::move(*program);
+  glUseProgram(inset.id());
+  const float radius = layout.inset_radius_px;
+  glUniform4f(gles::uniform(inset, "u_box"), layout.inset_centre.x - radius, layout.inset_centre.y - radius,
+              2 * radius, 2 * radius);
+  glUniform2f(gles::uniform(inset, "u_panel_size"), static_cast<float>(settings.width_px),
+              static_cast<float>(settings.height_px));
+  glUniform4f(gles::uniform(inset, "u_circle"), static_cast<float>(scope.mask.cx_px),
+              static_cast<float>(scope.mask.cy_px), static_cast<float>(scope.mask.radius_px), 0);
+  glUniform1f(gles::uniform(inset, "u_aspect"), static_cast<float>(scope.lens.fx_px / scope.lens.fy_px));
+  glUniform1f(gles::uniform(inset, "u_radius_px"), radius);
+  picture_uniforms = gles::PictureTexture::uniforms_of(inset);
+  no_attributes = gles::make_vertex_array();
+  return {};
+}
+
+Result<Screen> Screen::create(const Surface& surface, const AtlasLayout& layout, const ScopeModel& scope,
+                              const ScreenSettings& settings) {
+  auto state = std::make_unique<State>();
+  state->settings = settings;
+  state->scope = scope;
+  state->layout = panel_layout(settings.width_px, settings.height_px);
+  auto view = SurfaceView::create(surface, layout,
+                                  {.width_px = static_cast<int>(state->layout.view.width),
+                                   .height_px = static_cast<int>(state->layout.view.height),
+                                   .seen_from = settings.seen_from});
+  if (!view) return tl::unexpected(view.error());
+  state->view.push_back(std::move(*view));
+  auto canvas = HudCanvas::create(
+      {.width_px = settings.width_px, .height_px = settings.height_px, .rows = RowOrder::top_first});
+  if (!canvas) return tl::unexpected(canvas.error());
+  state->canvas.push_back(std::move(*canvas));
+  state->picture = gles::make_texture({GL_RGBA8, settings.width_px, settings.height_px});
+  auto framebuffer = gles::make_framebuffer(state->picture.id());
+  if (!framebuffer) return tl::unexpected(framebuffer.error());
+  state->framebuffer = std::move(*framebuffer);
+  if (auto made = state->make_inset(); !made) return tl::unexpected(made.error());
+  const char* extensions = reinterpret_cast<const char*>(glGetString(GL_EXTENSIONS));
+  state->reads_bgra = extensions != nullptr && std::strstr(extensions, "GL_EXT_read_format_bgra") != nullptr;
+  return Screen(std::move(state));
+}
+
+Screen::Screen(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Screen::Screen(Screen&&) noexcept = default;
+Screen& Screen::operator=(Screen&&) noexcept = default;
+Screen::~Screen() = default;
+
+void Screen::State::draw_inset(const gles::PictureTexture& live) noexcept {
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glUseProgram(inset.id());
+  live.bind(picture_uniforms, 0);
+  glBindVertexArray(no_attributes.id());
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  glBindVertexArray(0);
+  glDisable(GL_BLEND);
+  glActiveTexture(GL_TEXTURE0);
+}
+
+bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageDescriptor& target) noexcept {
+  State& s = *state_;
+  if (!s.drawn || s.drawn_version != state.paint_version || !(s.drawn_eye == state.eye)) {
+    s.view[0].draw(state.eye, painter.atlas_texture());
+    s.drawn = true;
+    s.drawn_version = state.paint_version;
+    s.drawn_eye = state.eye;
+  }
+  s.view[0].copy_to(s.framebuffer.id(), static_cast<int>(s.layout.view.x), static_cast<int>(s.layout.view.y));
+  glBindFramebuffer(GL_FRAMEBUFFER, s.framebuffer.id());
+  HudCanvas& canvas = s.canvas[0];
+  draw_grounds(canvas, s.layout);
+  if (state.X_MC)
+    draw_scope(canvas, s.layout.view, state.eye, s.scope,
+               {.X_MC = *state.X_MC, .predicted = state.scope_predicted});
+  canvas.flush();
+  const bool live = state.show_live && !painter.picture().empty();
+  glViewport(0, 0, s.settings.width_px, s.settings.height_px);
+  if (live) s.draw_inset(painter.picture());
+  draw_status(canvas, s.layout, state.status, live ? InsetContent::picture : InsetContent::blank);
+  canvas.flush();
+  return s.read_into(target);
+}
+
+bool Screen::State::read_into(const ImageDescriptor& target) noexcept {
+  const ImagePlane& plane = target.planes[0];
+  const bool bgr = target.format == PixelFormat::xrgb8888;
+  if (plane.data == nullptr || target.width_px != settings.width_px ||
+      target.height_px != settings.height_px || (!bgr && target.format != PixelFormat::rgba8888)) {
+    return false;
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+  glPixelStorei(GL_PACK_ROW_LENGTH, static_cast<GLint>(plane.stride_bytes / 4));
+  std::byte* const first = plane.data + plane.offset_bytes;
+  glReadPixels(0, 0, settings.width_px, settings.height_px, bgr && reads_bgra ? GL_BGRA_EXT : GL_RGBA,
+               GL_UNSIGNED_BYTE, first);
+  glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+  if (!bgr || reads_bgra) return true;
+  for (int y = 0; y < settings.height_px; ++y) {
+    std::byte* row = first + static_cast<std::size_t>(y) * plane.stride_bytes;
+    for (int x = 0; x < settings.width_px; ++x) std::swap(row[4 * x], row[4 * x + 2]);
+  }
+  return true;
+}
+
+Result<AtlasPicture> picture_of_surface(const Surface& surface, const AtlasLayout& layout,
+                                        const Painter& painter, const Eye& eye,
+                                        const ScreenSettings& settings) {
+  auto view = SurfaceView::create(
+      surface, layout,
+      {.width_px = settings.width_px, .height_px = settings.height_px, .seen_from = settings.seen_from});
+  if (!view) return tl::unexpected(view.error());
+  view->draw(eye, painter.atlas_texture());
+  AtlasPicture picture{.width_texels = settings.width_px, .height_texels = settings.height_px};
+  picture.rgba.resize(4 * static_cast<std::size_t>(settings.width_px) *
+                      static_cast<std::size_t>(settings.height_px));
+  glBindFramebuffer(GL_FRAMEBUFFER, view->framebuffer());
+  glReadPixels(0, 0, settings.width_px, settings.height_px, GL_RGBA, GL_UNSIGNED_BYTE, picture.rgba.data());
+  return picture;
+}
+
+}  // namespace orcart
