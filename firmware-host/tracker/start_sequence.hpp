@@ -1,0 +1,116 @@
+// From an unknown device to one that tracks: the order of commands as a state machine that touches no link.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "firmware-host/tracker/ndi/command.hpp"
+#include "firmware-host/tracker/ndi_settings.hpp"
+#include "firmware-host/tracker/tracker_reply.hpp"
+#include "firmware-host/tracker/trouble.hpp"
+#include "realtime/base/instant.hpp"
+
+namespace orcart {
+
+/// What the driver is to do next.
+struct StartAction {
+  enum class Kind : std::uint8_t {
+    send,         ///< `command`, with `time` for the reply
+    set_line,     ///< to `baud`
+    send_break,   ///< the device restarts
+    await_reset,  ///< RESET comes by itself within `time`
+    pause,        ///< for `time`
+    finished,     ///< the device tracks
+    failed,       ///< see trouble()
+  };
+  Kind kind = Kind::failed;
+  ndi::Command command;
+  Nanos time{};
+  std::uint32_t baud = 0;
+};
+
+/// Probe at the rate last used, then at 9600, then by a break; COMM; free old handles; request, upload,
+/// initialise, describe and enable each tool; start tracking. Order as PLUS has it. One thread; allocates
+/// nothing.
+class StartSequence {
+ public:
+  explicit StartSequence(const NdiSettings& settings) noexcept;
+
+  /// Starts over.
+  void begin() noexcept;
+  /// What to do now; the same until one of the on_...() is called.
+  StartAction action() const noexcept;
+  /// The action was carried out (line set, break sent, pause over).
+  void on_done() noexcept;
+  void on_reply(std::string_view text) noexcept;
+  /// The reply was damaged, or none came in time.
+  void on_no_reply() noexcept;
+  void on_line_refused() noexcept;
+
+  /// Why the newest failed start failed; so for error_code() and failed_tool().
+  TrackerTrouble trouble() const noexcept { return trouble_; }
+  /// The code of the ERRORhh that ended the start; 0 where none did.
+  std::uint8_t error_code() const noexcept { return error_code_; }
+  /// The tool that the start was busy with when it failed; -1 where with none.
+  int failed_tool() const noexcept { return failed_tool_; }
+  std::uint8_t handle_of(int tool) const noexcept { return handles_[static_cast<std::size_t>(tool)]; }
+  std::uint32_t baud() const noexcept { return line_baud_; }
+
+ private:
+  enum class Step : std::uint8_t {
+    fast_line,
+    fast_probe,
+    slow_line,
+    slow_probe,
+    send_break,
+    await_reset,
+    settle_after_reset,
+    probe_after_reset,
+    settle_after_init,
+    comm,
+    settle_after_comm,
+    comm_line,
+    list_old,
+    free_old,
+    request,
+    upload,
+    list_new,
+    initialise,
+    list_initialised,
+    describe,
+    enable,
+    start,
+    finished,
+    failed,
+  };
+  void go(Step step) noexcept { step_ = step; }
+  void fail(TrackerTrouble trouble, std::uint8_t error_code = 0) noexcept;
+  bool busy_with_a_tool() const noexcept;
+  void after_init() noexcept;
+  void on_error(std::uint8_t code) noexcept;
+  void on_okay() noexcept;
+  void on_list(std::string_view text) noexcept;
+  void next_old_handle() noexcept;
+  void next_block() noexcept;
+  bool lists_all_tools(std::string_view text) const noexcept;
+  /// Goes to `again` for the next tool, or to `then` after the last.
+  void next_tool(Step again, Step then) noexcept;
+  StartAction send(const ndi::Command& command, Nanos patience) const noexcept;
+  StartAction tool_command() const noexcept;
+
+  const NdiSettings& settings_;
+  Step step_ = Step::failed;
+  std::uint32_t wanted_baud_;  ///< the fastest that is still worth trying
+  std::uint32_t line_baud_ = ndi::kPowerOnBaud;
+  std::array<std::uint8_t, kMaxTools> handles_{};
+  std::array<std::uint8_t, 64> old_{};
+  std::size_t old_count_ = 0;
+  std::size_t old_next_ = 0;
+  std::size_t tool_ = 0;
+  std::size_t block_ = 0;
+  TrackerTrouble trouble_ = TrackerTrouble::none;
+  std::uint8_t error_code_ = 0;
+  int failed_tool_ = -1;
+};
+
+}  // namespace orcart

@@ -1,0 +1,45 @@
+// What can be wrong between the driver and its tracker, as a code that costs nothing, and in words.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace orcart {
+
+enum class TrackerTrouble : std::uint8_t {
+  none,
+  not_answering,   ///< nothing answers the probe, not even after a break
+  device_refuses,  ///< the device answered a command of the start with an error
+  bad_answer,      ///< the device answered a command of the start with something else
+  silent,          ///< replies have stopped coming
+  bad_crc,         ///< 3 damaged replies in a row, or 1 % of them in 10 s
+  frame_stuck,     ///< replies come, but the device measures nothing new
+  device_reset,    ///< the device restarted, or forgot that it was tracking
+  disconnected,    ///< the link is gone
+};
+
+constexpr std::string_view word_for(TrackerTrouble trouble) noexcept {
+  switch (trouble) {
+    case TrackerTrouble::none:
+      return "fine";
+    case TrackerTrouble::not_answering:
+      return "no tracker answers on the line";
+    case TrackerTrouble::device_refuses:
+      return "the tracker refuses a command";
+    case TrackerTrouble::bad_answer:
+      return "the tracker answers what was not asked";
+    case TrackerTrouble::silent:
+      return "the tracker has fallen silent";
+    case TrackerTrouble::bad_crc:
+      return "replies of the tracker arrive damaged";
+    case TrackerTrouble::frame_stuck:
+      return "the tracker repeats one frame";
+    case TrackerTrouble::device_reset:
+      return "the tracker has restarted";
+    case TrackerTrouble::disconnected:
+      return "the tracker is disconnected";
+  }
+  return "unknown trouble";
+}
+
+}  // namespace orcart

@@ -1,0 +1,311 @@
+// The driver against the emulated tracker: start, polling, and each fault noticed in time.
+#include "firmware-host/tracker/ndi_driver.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/firmware-host/tracker/tracker_rig.hpp"
+#include "tests/support/zero_allocation.hpp"
+
+namespace orcart::testing {
+namespace {
+
+/// Runs until `done` says so of a report, and tells how long that took; fails after `most`.
+template <class Done>
+Nanos time_until(TrackerRig& rig, Nanos most, Done done) {
+  const Instant begin = rig.clock.now();
+  Instant seen = Instant::max();
+  while (seen == Instant::max() && rig.clock.now() < begin + most) {
+    rig.run_until(std::min(begin + most, rig.driver_due()), [&](const DriverReport& report) {
+      if (seen == Instant::max() && done(report)) seen = rig.clock.now();
+    });
+  }
+  EXPECT_NE(seen, Instant::max()) << "not noticed at all";
+  return seen == Instant::max() ? most : seen - begin;
+}
+
+TEST(NdiDriver, StartsADeviceAtItsPowerOnRateAndGoesToTheWantedOne) {
+  TrackerRig rig;
+  rig.start();
+  EXPECT_EQ(rig.device.baud(rig.clock.now()), 115200u);
+  EXPECT_EQ(rig.driver.baud(), 115200u);
+  EXPECT_TRUE(rig.device.tracking());
+  EXPECT_EQ(rig.driver.counters().restarts, 0u);
+}
+
+TEST(NdiDriver, StartsADeviceThatWasLeftTrackingAtAnotherRate) {
+  TrackerRig rig;
+  rig.start();
+  NdiDriver second(two_tools(), rig.link);
+  const Instant end = rig.clock.now() + 5s;
+  while (second.health() != TrackerHealth::live && rig.clock.now() < end) {
+    rig.link.wait(second.next_due());
+    second.step(rig.clock.now());
+  }
+  EXPECT_EQ(second.health(), TrackerHealth::live) << second.trouble_sentence();
+}
+
+TEST(NdiDriver, StartsANetworkDeviceWithoutTouchingALine) {
+  TrackerRig rig(two_tools(0), {.has_line = false});
+  rig.start();
+  EXPECT_EQ(rig.device.baud(rig.clock.now()), 9600u);
+}
+
+TEST(NdiDriver, ReportsEachDeviceFrameOnceForAMinuteWithoutAMissedReply) {
+  TrackerRig rig(two_tools(), {.clock_drift_ppm = 60});
+  rig.start();
+  rig.run_for(100ms);
+  std::uint32_t last = rig.driver.reply().device_frame;
+  int reported = 0;
+  rig.run_for(60s, [&](const DriverReport& report) {
+    if (!report.new_reply) return;
+    EXPECT_GT(rig.driver.reply().device_frame, last);
+    last = rig.driver.reply().device_frame;
+    ++reported;
+  });
+  const DriverCounters& counters = rig.driver.counters();
+  EXPECT_EQ(counters.timeouts, 0u);
+  EXPECT_EQ(counters.crc_bad, 0u);
+  EXPECT_EQ(counters.skipped_polls, 0u);
+  EXPECT_EQ(counters.restarts, 0u);
+  EXPECT_GE(counters.polls, 3600u);
+  EXPECT_LE(counters.polls - counters.replies, 1u) << "one may be on its way";
+  EXPECT_GE(reported, 3598);
+}
+
+TEST(NdiDriver, SaysWhereTheToolsAreAtTheDeviceFrame) {
+  TrackerRig rig;
+  rig.start();
+  rig.run_for(50ms);
+  const TrackerReply& reply = rig.driver.reply();
+  ASSERT_EQ(reply.tool_count, 2);
+  for (int tool = 0; tool < 2; ++tool) {
+    const ToolReading& reading = reply.readings()[static_cast<std::size_t>(tool)];
+    const TrueToolPose truth =
+        rig.motion.pose_of(tool, rig.device.device_clock().measured_at(reply.device_frame));
+    EXPECT_EQ(reading.state, ToolState::seen);
+    EXPECT_LT((reading.translation_mm - truth.translation_mm).norm(), 1e-3);
+    EXPECT_LT(reading.quaternion.angularDistance(truth.rotation), 1e-6);
+  }
+  EXPECT_GT(reply.arrived_at, reply.asked_at);
+}
+
+TEST(NdiDriver, TellsAHiddenToolWithinAPeriodAndFiveMilliseconds) {
+  TrackerRig rig;
+  rig.start();
+  rig.run_for(103ms);
+  rig.motion.hidden = 0;
+  // The device itself needs a frame and its latency before it can say so; the bound is on what comes after.
+  const Nanos device = period_of(60) + 4ms;
+  const Nanos took = time_until(rig, 1s, [&](const DriverReport& r) {
+    return r.new_reply && rig.driver.reply().tools[0].state == ToolState::unseen;
+  });
+  EXPECT_LE(took, device + period_of(60) + 5ms);
+  EXPECT_EQ(rig.driver.reply().tools[1].state, ToolState::seen);
+  EXPECT_GE(rig.driver.counters().missing[0], 1u);
+}
+
+TEST(NdiDriver, ReadsThroughADamagedReplyAndGoesOnWithTheNext) {
+  TrackerRig rig;
+  rig.start();
+  rig.run_for(100ms);
+  const Instant now = rig.clock.now();
+  rig.device.faults().add({.fault = NdiFault::bad_crc, .from = now, .until = now + 20ms});
+  rig.run_for(200ms, [](const DriverReport& r) { EXPECT_EQ(r.health, TrackerHealth::live); });
+  EXPECT_GE(rig.driver.counters().crc_bad, 1u);
+  EXPECT_EQ(rig.driver.counters().restarts, 0u);
+}
+
+TEST(NdiDriver, CallsThreeDamagedRepliesInARowTrouble) {
+  TrackerRig rig;
+  rig.start();
+  rig.run_for(100ms);
+  const Instant now = rig.clock.now();
+  rig.device.faults().add({.fault = NdiFault::bad_crc, .from = now, .until = now + 50ms});
+  const Nanos took =
+      time_until(rig, 1s, [](const DriverReport& r) { return r.health != TrackerHealth::live; });
+  EXPECT_LE(took, 50ms + period_of(60) + 5ms);
+  EXPECT_GE(rig.driver.counters().crc_bad, 3u);
+}
+
+TEST(NdiDriver, CallsOneDamagedReplyInAHundredTroubleAndKeepsTracking) {
+  TrackerRig rig;
+  rig.start();
+  rig.device.faults().add({.fault = NdiFault::bad_crc, .from = rig.clock.now(), .every = 90});
+  const Nanos took =
+      time_until(rig, 20s, [](const DriverReport& r) { return r.trouble == TrackerTrouble::bad_crc; });
+  EXPECT_LE(took, 10s);
+  EXPECT_EQ(rig.driver.health(), TrackerHealth::live);
+  EXPECT_EQ(rig.driver.counters().restarts, 0u);
+}
+
+TEST(NdiDriver, ToleratesOneDamagedReplyInTwoHundred) {
+  TrackerRig rig;
+  rig.start();
+  rig.device.faults().add({.fault = NdiFault::bad_crc, .from = rig.clock.now(), .every = 200});
+  rig.run_for(20s, [](const DriverReport& r) { EXPECT_EQ(r.trouble, TrackerTrouble::none); });
+}
+
+TEST(NdiDriver, IsSuspectAfterThreePeriodsOfSilenceAndLostAfterAHundredMilliseconds) {
+  TrackerRig rig;
+  rig.start();
+  rig.run_for(100ms);
+  rig.device.faults().add(
+      {.fault = NdiFault::silence, .from = rig.clock.now(), .until = rig.clock.now() + 2s});
+  const Instant begin = rig.clock.now();
+  const Nanos suspect =
+      time_until(rig, 1s, [](const DriverReport& r) { return r.health == TrackerHealth::suspect; });
+  const Instant last_reply = rig.driver.reply().arrived_at;
+  EXPECT_EQ(begin + suspect, last_reply + 50ms);
+  const Nanos lost =
+      time_until(rig, 1s, [](const DriverReport& r) { return r.health == TrackerHealth::lost; });
+  EXPECT_EQ(begin + suspect + lost, last_reply + 100ms);
+  EXPECT_EQ(rig.driver.trouble(), TrackerTrouble::silent);
+}
+
+TEST(NdiDriver, ComesBackFromSilenceByItselfWithItsToolsLoadedAgain) {
+  TrackerRig rig;
+  rig.start();
+  rig.device.faults().add(
+      {.fault = NdiFault::silence, .from = rig.clock.now(), .until = rig.clock.now() + 2s});
+  rig.run_for(1s);
+  EXPECT_EQ(rig.driver.health(), TrackerHealth::lost);
+  rig.start(15s);
+  EXPECT_GE(rig.driver.counters().restarts, 1u);
+  rig.run_for(50ms);
+  EXPECT_EQ(rig.driver.reply().tools[0].state, ToolState::seen);
+  EXPECT_EQ(rig.driver.trouble(), TrackerTrouble::none);
+}
+
+TEST(NdiDriver, ComesBackFromAResetInTheMiddle) {
+  TrackerRig rig;
+  rig.start();
+  rig.device.faults().add({.fault = NdiFault::reset, .from = rig.clock.now() + 500ms});
+  rig.run_for(700ms);
+  EXPECT_EQ(rig.driver.health(), TrackerHealth::lost);
+  rig.start(15s);
+}
+
+TEST(NdiDriver, CallsAStandingFrameNumberLostAfterThreePeriods) {
+  TrackerRig rig;
+  rig.start();
+  rig.run_for(100ms);
+  const Instant now = rig.clock.now();
+  rig.device.faults().add({.fault = NdiFault::frozen_frame, .from = now, .until = now + 1s});
+  const Nanos took =
+      time_until(rig, 1s, [](const DriverReport& r) { return r.health == TrackerHealth::lost; });
+  EXPECT_LE(took, 4 * period_of(60)) << "3 periods after the last reply with a new frame";
+  EXPECT_GE(took, 2 * period_of(60));
+  EXPECT_EQ(rig.driver.trouble(), TrackerTrouble::frame_stuck);
+  rig.start(15s);
+}
+
+TEST(NdiDriver, SaysWhyAToolIsDisabled) {
+  TrackerRig rig;
+  rig.start();
+  rig.run_for(100ms);
+  rig.device.faults().add(
+      {.fault = NdiFault::unplugged, .from = rig.clock.now(), .until = rig.clock.now() + 10s, .amount = 1});
+  rig.run_for(200ms);
+  EXPECT_EQ(rig.driver.reply().tools[0].state, ToolState::seen);
+  EXPECT_EQ(rig.driver.reply().tools[1].state, ToolState::disabled);
+  EXPECT_TRUE(rig.driver.disabled_reason(1).starts_with("no tool in the port"))
+      << rig.driver.disabled_reason(1);
+  EXPECT_EQ(rig.driver.disabled_reason(0), "ready");
+}
+
+TEST(NdiDriver, CountsHandlesThatNobodyHasAndBelievesNone) {
+  TrackerRig rig;
+  rig.start();
+  rig.run_for(100ms);
+  const Instant now = rig.clock.now();
+  rig.device.faults().add({.fault = NdiFault::wrong_handle, .from = now, .until = now + 30ms});
+  rig.run_for(30ms);
+  EXPECT_GE(rig.driver.counters().unknown_handles, 2u);
+  EXPECT_NE(rig.driver.reply().tools[0].state, ToolState::seen);
+}
+
+TEST(NdiDriver, PassesOnThatThereIsTooMuchInfrared) {
+  TrackerRig rig;
+  rig.start();
+  rig.device.faults().add({.fault = NdiFault::infrared, .from = rig.clock.now()});
+  rig.run_for(100ms);
+  EXPECT_EQ(rig.driver.reply().system_status, 0x0002);
+}
+
+TEST(NdiDriver, SurvivesNoiseTruncationAndLateness) {
+  for (const NdiFault fault : {NdiFault::garbage, NdiFault::truncated, NdiFault::late}) {
+    TrackerRig rig;
+    rig.start();
+    rig.run_for(100ms);
+    const Instant now = rig.clock.now();
+    rig.device.faults().add({.fault = fault, .from = now, .until = now + 30ms, .amount = 40});
+    rig.run_for(500ms, [](const DriverReport& r) { EXPECT_NE(r.health, TrackerHealth::lost); });
+    EXPECT_EQ(rig.driver.health(), TrackerHealth::live);
+    EXPECT_EQ(rig.driver.counters().restarts, 0u);
+    EXPECT_GE(rig.driver.counters().crc_bad + rig.driver.counters().timeouts, 1u);
+  }
+}
+
+TEST(NdiDriver, OpensTheLinkAgainAfterItWasUnplugged) {
+  TrackerRig rig;
+  rig.start();
+  rig.run_for(100ms);
+  rig.link.unplug();
+  const Nanos took =
+      time_until(rig, 1s, [](const DriverReport& r) { return r.health == TrackerHealth::lost; });
+  EXPECT_LE(took, 20ms);
+  EXPECT_EQ(rig.driver.trouble(), TrackerTrouble::disconnected);
+  rig.run_for(3s);
+  rig.link.plug_in();
+  rig.start(15s);
+}
+
+TEST(NdiDriver, SaysWhichToolTheDeviceRefused) {
+  NdiSettings settings = two_tools();
+  settings.tools[1].memory[80] ^= std::byte{1};
+  TrackerRig rig(std::move(settings));
+  rig.run_for(5s);
+  EXPECT_EQ(rig.driver.health(), TrackerHealth::starting);
+  EXPECT_EQ(rig.driver.trouble(), TrackerTrouble::device_refuses);
+  EXPECT_EQ(rig.driver.trouble_sentence(),
+            "the tracker refuses a command for tool REFERENCE: the tool definition is damaged");
+}
+
+TEST(NdiDriver, SaysThatNothingAnswersAndKeepsTrying) {
+  TrackerRig rig;
+  rig.device.faults().add(
+      {.fault = NdiFault::silence, .from = rig.clock.now(), .until = rig.clock.now() + 9s});
+  rig.run_for(8s);
+  EXPECT_EQ(rig.driver.health(), TrackerHealth::starting);
+  rig.start(30s);
+}
+
+TEST(NdiDriver, AsksForNoMemoryOncePolling) {
+  TrackerRig rig;
+  rig.start();
+  rig.run_for(1s);
+  EXPECT_TRUE(zero_allocation([&] {
+    const Instant end = rig.clock.now() + 1s;
+    while (rig.clock.now() < end) {
+      rig.link.wait(rig.driver.next_due());
+      rig.driver.step(rig.clock.now());
+    }
+  }));
+}
+
+TEST(NdiDriver, AsksForNoMemoryWhileItStartsAgain) {
+  TrackerRig rig;
+  rig.start();
+  rig.device.faults().add({.fault = NdiFault::reset, .from = rig.clock.now() + 100ms});
+  EXPECT_TRUE(zero_allocation([&] {
+    const Instant end = rig.clock.now() + 5s;
+    while (rig.clock.now() < end) {
+      rig.link.wait(rig.driver.next_due());
+      rig.driver.step(rig.clock.now());
+    }
+  }));
+  EXPECT_EQ(rig.driver.health(), TrackerHealth::live);
+}
+
+}  // namespace
+}  // namespace orcart::testing
