@@ -24,6 +24,7 @@ Result<ImageDescriptor, PortFault> SimulatedPanel::acquire() noexcept {
 }
 
 Result<std::uint64_t, PortFault> SimulatedPanel::present(Instant now) noexcept {
+  now = std::max(now, clock_.now());  // a picture that took its time to draw cannot flip in the past
   complete_flip(now);
   if (faulty(PanelFault::disconnected, now)) return tl::unexpected(PortFault::disconnected);
   if (drawing_ == kNone) return tl::unexpected(PortFault::unsupported);
