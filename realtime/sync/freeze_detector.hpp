@@ -15,14 +15,15 @@ class FreezeDetector {
 
   /// `stamp`: of the frame; `checksum`: of its pixels. True: frozen.
   bool see(std::uint32_t sequence, Instant stamp, std::uint32_t checksum) noexcept {
+    if (have_ && sequence == sequence_) return frozen_;
     const bool same = have_ && checksum == checksum_;
-    if (!same) {
+    if (same)
+      ++repeats_;
+    else
       since_ = stamp;
-      checksum_ = checksum;
-      have_ = true;
-    }
-    if (same && sequence != sequence_) ++repeats_;
+    have_ = true;
     sequence_ = sequence;
+    checksum_ = checksum;
     frozen_ = stamp - since_ >= kFrozenAfter;
     return frozen_;
   }
