@@ -1,0 +1,17 @@
+// Where captures go to be kept: a seam, so that the painter stage knows nothing of files.
+#pragma once
+
+#include "firmware-host/stages/frame_ledger.hpp"
+
+namespace orcart {
+
+/// Called on the render thread; copies what it wants and returns at once. Full: counts, and the live view
+/// goes on.
+class CaptureSink {
+ public:
+  virtual ~CaptureSink() = default;
+  virtual void keep(const CapturedFrame& frame, const CaptureRecord& record) noexcept = 0;
+  virtual void undone(std::uint32_t unit) noexcept = 0;
+};
+
+}  // namespace orcart

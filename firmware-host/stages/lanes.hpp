@@ -1,0 +1,79 @@
+// Every channel between the threads, in one place: who writes, who reads, and what is in it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "firmware-host/pedal/pedal_gestures.hpp"
+#include "firmware-host/stages/paint_order.hpp"
+#include "realtime/kernel/mailbox.hpp"
+#include "realtime/kernel/spsc_queue.hpp"
+#include "realtime/mapper/cutout_patch.hpp"
+#include "realtime/sync/captured_frame.hpp"
+#include "realtime/sync/frame_matcher.hpp"
+#include "realtime/sync/pose_sample.hpp"
+
+namespace orcart {
+
+/// The tracker as its driver sees it, for the panel.
+struct TrackerNews {
+  Instant last_reply{};
+  Instant last_complete{};  ///< newest sample in which scope and reference were both seen
+  bool running = false;
+  ToolState scope = ToolState::unseen;
+  ToolState reference = ToolState::unseen;
+};
+
+/// The camera as its stage sees it, for the panel.
+struct CameraNews {
+  Instant last_frame{};
+  std::uint32_t sequence_gaps = 0;
+  std::uint32_t damaged = 0;
+  bool frozen = false;
+  bool connected = true;
+};
+
+/// Where the scope is now, for the outline.
+struct ScopeNow {
+  Instant at{};
+  PoseAnswer pose;
+  Pose<M, C> X_MC;
+};
+
+/// A frame that is to be painted, for whom, and since when that is known.
+struct Selection {
+  MatchedFrame matched;
+  CaptureRequest request;
+  Instant decided_at{};
+};
+
+struct LaneDepths {
+  std::size_t poses, pedal, frames, orders, patches;
+};
+
+/// Built before arming, lent to the stages by reference.
+struct Lanes {
+  explicit Lanes(const LaneDepths& d)
+      : poses(d.poses),
+        pedal(d.pedal),
+        frames(d.frames),
+        frames_home(d.frames),
+        selected(d.frames),
+        orders(d.orders),
+        patches_home(d.patches) {}
+
+  SpscQueue<PoseSample> poses;           ///< tracker -> mapping
+  SpscQueue<PedalEvent> pedal;           ///< pedal -> mapping
+  SpscQueue<CapturedFrame> frames;       ///< camera -> mapping; as deep as there are buffers
+  SpscQueue<std::uint32_t> frames_home;  ///< render -> camera: the buffers' way home
+  SpscQueue<Selection> selected;         ///< sync -> mapper, on one thread
+  SpscQueue<PaintOrder> orders;  ///< mapping -> render; deep enough for two orders a buffer and the pedal
+  SpscQueue<std::uint32_t> patches_home;    ///< render -> mapping: the patch slots' way home
+  LatestMailbox<TrackerNews> tracker_news;  ///< tracker -> render
+  LatestMailbox<CameraNews> camera_news;    ///< camera -> render
+  LatestMailbox<ScopeNow> scope_now;        ///< mapping -> render
+};
+
+}  // namespace orcart

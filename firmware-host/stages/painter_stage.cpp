@@ -1,0 +1,165 @@
+// Orders are handled in their order; buffers and patch slots go home as soon as nothing needs them.
+#include "firmware-host/stages/painter_stage.hpp"
+
+namespace orcart {
+
+PainterStage::PainterStage(const Parts& parts)
+    : painter_(parts.painter),
+      lanes_(parts.lanes),
+      patches_(parts.patches),
+      captures_(parts.captures),
+      sink_(parts.sink),
+      holds_(parts.buffer_count, 0) {}
+
+StepReport PainterStage::step(Instant now) noexcept {
+  StepReport report;
+  if (is_carried_) {
+    go_on(now);
+    report.items = 1;
+  }
+  PaintOrder order;
+  const std::size_t waiting = lanes_.orders.size();  // bound: what had come when the step began
+  for (std::size_t i = 0; i < waiting && !is_carried_ && lanes_.orders.try_pop(order); ++i) {
+    handle(order, now);
+    ++report.items;
+  }
+  upload_newest(now);
+  report.worked = report.items > 0;
+  report.carried = is_carried_;
+  return report;
+}
+
+void PainterStage::handle(const PaintOrder& order, Instant now) noexcept {
+  switch (order.kind) {
+    case PaintOrderKind::show:
+      show(order.frame);
+      break;
+    case PaintOrderKind::paint:
+      paint(order, now);
+      break;
+    case PaintOrderKind::release:
+      done_with(order.frame.buffer);
+      break;
+    case PaintOrderKind::acknowledge:
+      state_.acknowledge_pending = true;
+      state_.acknowledged_unit = order.request.unit;
+      state_.streaming = order.request.streaming;
+      break;
+    case PaintOrderKind::cancel:
+      state_.acknowledge_pending = false;
+      if (unit_count_ > 0 && units_[unit_count_ - 1] == order.request.unit) take_back(now);
+      break;
+    case PaintOrderKind::undo:
+      take_back(now);
+      break;
+    case PaintOrderKind::stream_end:
+      state_.streaming = false;
+      break;
+    case PaintOrderKind::fail:
+      fail(order, now);
+      break;
+    case PaintOrderKind::warn:
+      state_.warned_at = now;
+      break;
+  }
+}
+
+// A newer picture replaces the one in the inset; the frame itself is held twice: as newest, and for its
+// second order.
+void PainterStage::show(const CapturedFrame& frame) noexcept {
+  if (have_newest_) done_with(newest_.buffer);
+  newest_ = frame;
+  have_newest_ = true;
+  upload_due_ = true;
+  holds_[frame.buffer] = 2;
+}
+
+// Of a view in parts, the painter paints with the last one.
+void PainterStage::paint(const PaintOrder& order, Instant now) noexcept {
+  painter_.upload(order.frame.image);
+  upload_due_ = have_newest_;  // the inset goes back to the newest picture
+  const bool last = patches_[order.patch].last_part;
+  const PaintReport report = painter_.paint(patches_[order.patch], order.request.unit);
+  (void)lanes_.patches_home.try_push(order.patch);
+  if (!last) return;
+  is_carried_ = report.carried;
+  carried_ = order;
+  if (!report.carried) painted(order, now);
+}
+
+void PainterStage::go_on(Instant now) noexcept {
+  painter_.upload(carried_.frame.image);
+  upload_due_ = have_newest_;
+  is_carried_ = painter_.paint_more().carried;
+  if (!is_carried_) painted(carried_, now);
+}
+
+void PainterStage::painted(const PaintOrder& order, Instant now) noexcept {
+  const bool new_unit = unit_count_ == 0 || units_[unit_count_ - 1] != order.request.unit;
+  if (new_unit) {
+    if (unit_count_ == units_.size()) {
+      for (std::size_t i = 1; i < units_.size(); ++i) units_[i - 1] = units_[i];
+      --unit_count_;
+    }
+    units_[unit_count_++] = order.request.unit;
+    ++state_.captures;
+  }
+  ++state_.version;
+  state_.acknowledge_pending = false;
+  state_.last_refusal = Refusal::none;
+  CaptureRecord record{.unit = order.request.unit,
+                       .frame_sequence = order.frame.sequence,
+                       .streaming = order.request.streaming,
+                       .edge_at = order.request.edge_at,
+                       .mid_exposure = order.frame.mid_exposure(),
+                       .matched_at = order.matched_at,
+                       .mapped_at = order.mapped_at,
+                       .painted_at = now,
+                       .X_MC = order.X_MC,
+                       .pose_kind = order.pose_kind,
+                       .pose_distance = order.pose_distance};
+  captures_.append(record);
+  if (sink_ != nullptr) sink_->keep(order.frame, record);
+  done_with(order.frame.buffer);
+}
+
+void PainterStage::fail(const PaintOrder& order, Instant now) noexcept {
+  state_.acknowledge_pending = false;
+  state_.streaming = false;
+  state_.last_refusal = order.refusal;
+  state_.failed_at = now;
+  ++state_.refused;
+  captures_.append({.unit = order.request.unit, .refusal = order.refusal, .edge_at = order.request.edge_at});
+}
+
+void PainterStage::take_back(Instant now) noexcept {
+  if (unit_count_ == 0 || !painter_.undo()) return;
+  const std::uint32_t unit = units_[--unit_count_];
+  const std::size_t records = captures_.size();
+  for (std::size_t i = records; i > 0 && captures_.at(i - 1).unit >= unit;
+       --i) {  // bound: the ledger's capacity
+    if (captures_.at(i - 1).unit == unit) captures_.at(i - 1).undone = true;
+  }
+  if (state_.captures > 0) --state_.captures;
+  ++state_.version;
+  state_.undone_at = now;
+  if (sink_ != nullptr) sink_->undone(unit);
+}
+
+void PainterStage::done_with(std::uint32_t buffer) noexcept {
+  if (holds_[buffer] > 0 && --holds_[buffer] == 0) (void)lanes_.frames_home.try_push(buffer);
+}
+
+void PainterStage::upload_newest(Instant now) noexcept {
+  if (!upload_due_) return;
+  upload_due_ = false;
+  painter_.upload(newest_.image);
+  if (state_.newest.sequence == newest_.sequence && state_.newest.dequeued_at == newest_.dequeued_at) return;
+  state_.newest = {.sequence = newest_.sequence,
+                   .mid_exposure = newest_.mid_exposure(),
+                   .dequeued_at = newest_.dequeued_at,
+                   .uploaded_at = now};
+  state_.newest_is_new = true;
+}
+
+}  // namespace orcart

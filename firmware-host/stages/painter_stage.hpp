@@ -1,0 +1,79 @@
+// Takes pictures to the GPU, paints the captures, takes back what was undone. Thread: render. Rate: panel.
+// Budget: topology, row "upload + paint".
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "firmware-host/stages/capture_sink.hpp"
+#include "firmware-host/stages/frame_ledger.hpp"
+#include "firmware-host/stages/lanes.hpp"
+#include "realtime/kernel/stage.hpp"
+#include "render/atlas/painter.hpp"
+
+namespace orcart {
+
+/// What the painter stage tells the panel stage; both run on the render thread.
+struct PaintState {
+  std::uint64_t version = 0;   ///< of the painting
+  std::uint32_t captures = 0;  ///< units painted and not undone
+  std::uint32_t refused = 0;
+  bool acknowledge_pending = false;  ///< a press whose picture is neither painted nor refused yet
+  std::uint32_t acknowledged_unit = 0;
+  bool streaming = false;
+  Refusal last_refusal = Refusal::none;
+  Instant failed_at{};
+  Instant undone_at{};
+  Instant warned_at{};
+  FrameRecord newest;          ///< the frame in the inset
+  bool newest_is_new = false;  ///< not yet part of a submitted panel picture
+};
+
+class PainterStage final : public Stage {
+ public:
+  struct Parts {
+    Painter& painter;
+    Lanes& lanes;
+    std::vector<CutoutPatch>& patches;
+    Ledger<CaptureRecord>& captures;
+    CaptureSink* sink = nullptr;  ///< null: nothing is kept on disk
+    std::uint32_t buffer_count = 0;
+  };
+  explicit PainterStage(const Parts& parts);
+
+  std::string_view name() const noexcept override { return "upload + paint"; }
+  StepReport step(Instant now) noexcept override;
+
+  const PaintState& state() const noexcept { return state_; }
+  /// The panel stage hands back what became of the newest frame.
+  void mark_submitted() noexcept { state_.newest_is_new = false; }
+
+ private:
+  void handle(const PaintOrder& order, Instant now) noexcept;
+  void show(const CapturedFrame& frame) noexcept;
+  void paint(const PaintOrder& order, Instant now) noexcept;
+  void go_on(Instant now) noexcept;
+  void painted(const PaintOrder& order, Instant now) noexcept;
+  void fail(const PaintOrder& order, Instant now) noexcept;
+  void take_back(Instant now) noexcept;
+  void done_with(std::uint32_t buffer) noexcept;
+  void upload_newest(Instant now) noexcept;
+
+  Painter& painter_;
+  Lanes& lanes_;
+  std::vector<CutoutPatch>& patches_;
+  Ledger<CaptureRecord>& captures_;
+  CaptureSink* sink_;
+  std::vector<std::uint8_t> holds_;  ///< per buffer: how many reasons there are to keep it
+  CapturedFrame newest_;
+  bool have_newest_ = false;
+  bool upload_due_ = false;
+  std::array<std::uint32_t, 64> units_{};  ///< painted and not undone, newest last
+  std::uint32_t unit_count_ = 0;
+  PaintOrder carried_;  ///< what the texel cap stopped
+  bool is_carried_ = false;
+  PaintState state_;
+};
+
+}  // namespace orcart

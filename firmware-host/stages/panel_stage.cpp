@@ -1,0 +1,177 @@
+// One panel picture: what is known of the sources becomes words and a view, and every picture's flip is
+// traced back to the frame and the captures it showed.
+#include "firmware-host/stages/panel_stage.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace orcart {
+
+namespace {
+
+std::string_view words_for(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::tool_unseen:
+      return "CAPTURE FAILED: the tracker did not see the tool";
+    case Refusal::no_pose:
+      return "CAPTURE FAILED: no pose around the picture";
+    case Refusal::too_late:
+      return "CAPTURE FAILED: the pose came too late";
+    case Refusal::no_frame:
+      return "CAPTURE FAILED: no picture from the camera";
+    case Refusal::queue_full:
+      return "CAPTURE FAILED: too many pictures wait for their pose";
+    case Refusal::stamp_in_future:
+    case Refusal::stamp_backwards:
+      return "CAPTURE FAILED: the camera's time stamps are wrong";
+    case Refusal::none:
+      break;
+  }
+  return "";
+}
+
+Freshness shown_as(Liveness liveness) {
+  switch (liveness) {
+    case Liveness::live:
+      return Freshness::live;
+    case Liveness::stale:
+      return Freshness::stale;
+    case Liveness::lost:
+      break;
+  }
+  return Freshness::lost;
+}
+
+constexpr Nanos kScopeShownFor = 50ms;
+constexpr Nanos kNoticeTime = 2s;
+
+}  // namespace
+
+PanelStage::PanelStage(const Parts& parts, const PanelStageSettings& settings)
+    : parts_(parts), settings_(settings) {
+  screen_state_.eye = settings.eye;
+  screen_state_.status.simulated = settings.simulated;
+  screen_state_.status.software_rendering = settings.software_rendering;
+  screen_state_.status.degraded = settings.degraded;
+}
+
+StepReport PanelStage::step(Instant now) noexcept {
+  take_flips(now);
+  auto target = parts_.panel.acquire();
+  if (!target) return {};
+  fill_status(now);
+  parts_.screen.draw(screen_state_, parts_.painter, *target);
+  const auto serial = parts_.panel.present(now);
+  if (!serial) return {};
+
+  const PaintState& paint = parts_.painter_stage.state();
+  Submitted& submitted = submitted_[*serial % submitted_.size()];
+  submitted = {.serial = *serial,
+               .frame = paint.newest,
+               .has_new_frame = paint.newest_is_new,
+               .captures_shown = parts_.captures.size(),
+               .acknowledged_unit = paint.acknowledged_unit,
+               .acknowledges = paint.acknowledged_unit != 0};
+  submitted.frame.submitted_at = parts_.clock.now();
+  parts_.painter_stage.mark_submitted();
+  ++presented_;
+  return {.worked = true, .items = 1};
+}
+
+void PanelStage::take_flips(Instant now) noexcept {
+  for (std::size_t i = 0; i < submitted_.size(); ++i) {  // bound: no more pictures can be under way
+    const std::optional<Flip> flip = parts_.panel.take_flip(now);
+    if (!flip) return;
+    const Submitted& shown = submitted_[flip->serial % submitted_.size()];
+    if (shown.serial == flip->serial) settle(shown, flip->at);
+  }
+}
+
+// Late is counted from the submit deadline: a frame is late when the picture that holds it was scanned out
+// after the first vblank that follows its deadline.
+void PanelStage::settle(const Submitted& shown, Instant scan_out) noexcept {
+  if (shown.has_new_frame) {
+    FrameRecord record = shown.frame;
+    record.scan_out_at = scan_out;
+    const Instant deadline = record.dequeued_at + settings_.submit_deadline;
+    record.late = scan_out > parts_.panel.next_vblank(deadline);
+    parts_.frames.append(record);
+    screen_state_.status.latency_ms = static_cast<float>(milliseconds(scan_out - record.dequeued_at));
+    screen_state_.status.late_frames += record.late;
+  }
+  if (shown.acknowledges && shown.acknowledged_unit != last_acknowledged_) {
+    last_acknowledged_ = shown.acknowledged_unit;
+    acknowledged_scan_out_ = scan_out;
+  }
+  for (; settled_captures_ < shown.captures_shown;
+       ++settled_captures_) {  // bound: captures since the last flip
+    CaptureRecord& capture = parts_.captures.at(settled_captures_);
+    capture.on_panel_at = scan_out;
+    if (capture.unit == last_acknowledged_) capture.acknowledged_at = acknowledged_scan_out_;
+  }
+}
+
+void PanelStage::fill_status(Instant now) noexcept {
+  (void)parts_.lanes.tracker_news.take(tracker_);
+  (void)parts_.lanes.camera_news.take(camera_);
+  (void)parts_.lanes.scope_now.take(scope_);
+  const PaintState& paint = parts_.painter_stage.state();
+  Status& status = screen_state_.status;
+
+  const FreshnessRules& rules = settings_.freshness;
+  status.video = shown_as(camera_.connected ? rules.video(now, camera_.last_frame) : Liveness::lost);
+  status.tracker = shown_as(rules.tracker(now, tracker_.last_reply));
+  const bool tracked = rules.tool_seen(now, tracker_.last_complete);
+  status.tool_seen = tracked || tracker_.scope == ToolState::seen;
+  status.reference_seen = tracked || tracker_.reference == ToolState::seen;
+  status.capture_acknowledged = paint.acknowledge_pending;
+  status.streaming = paint.streaming;
+  status.captures = paint.captures;
+
+  screen_state_.show_live = status.video != Freshness::lost;
+  screen_state_.scope_predicted = scope_.pose.kind == PoseKind::predicted;
+  const bool show_scope =
+      tracked && scope_.pose.kind != PoseKind::none && now - scope_.at < kScopeShownFor;
+  screen_state_.X_MC = show_scope ? std::optional(scope_.X_MC) : std::nullopt;
+
+  if (paint.version != screen_state_.paint_version || now >= coverage_due_) {
+    screen_state_.paint_version = paint.version;
+    if (now >= coverage_due_) {
+      status.coverage = static_cast<float>(parts_.painter.coverage());
+      coverage_due_ = now + 500ms;
+    }
+  }
+  choose_notice(now);
+}
+
+void PanelStage::choose_notice(Instant now) noexcept {
+  const PaintState& paint = parts_.painter_stage.state();
+  const Status& status = screen_state_.status;
+  screen_state_.status.notice.level = Notice::Level::none;
+  if (status.video == Freshness::lost)
+    return notice(Notice::Level::alarm, "NO LIVE VIDEO: check the camera unit and its cable");
+  if (status.tracker == Freshness::lost)
+    return notice(Notice::Level::alarm, "TRACKER LOST: check its power and cable");
+  if (!status.tool_seen)
+    return notice(Notice::Level::warning, "TOOL NOT SEEN: clear the line of sight to the scope's markers");
+  if (!status.reference_seen)
+    return notice(Notice::Level::warning,
+                  "REFERENCE NOT SEEN: clear the line of sight to the patient's marker");
+  if (camera_.frozen) return notice(Notice::Level::warning, "VIDEO FROZEN? The same picture keeps coming");
+  if (paint.failed_at != Instant{} && now - paint.failed_at < kNoticeTime)
+    return notice(Notice::Level::warning, words_for(paint.last_refusal));
+  if (paint.warned_at != Instant{} && now - paint.warned_at < kNoticeTime)
+    return notice(Notice::Level::warning, "PEDAL: stuck or an edge was lost; release it");
+  if (paint.undone_at != Instant{} && now - paint.undone_at < kNoticeTime)
+    return notice(Notice::Level::info, "Taken back");
+}
+
+void PanelStage::notice(Notice::Level level, std::string_view text) noexcept {
+  Notice& notice = screen_state_.status.notice;
+  notice.level = level;
+  const std::size_t length = std::min(text.size(), notice.text.size() - 1);
+  std::memcpy(notice.text.data(), text.data(), length);
+  notice.text[length] = '\0';
+}
+
+}  // namespace orcart

@@ -1,0 +1,81 @@
+// Draws the screen and hands it to the panel; decides LIVE, STALE or LOST; learns when each picture was
+// scanned out. Thread: render. Rate: panel. Budget: topology, row "render + submit".
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "board/ports/panel.hpp"
+#include "firmware-host/stages/frame_ledger.hpp"
+#include "firmware-host/stages/lanes.hpp"
+#include "firmware-host/stages/painter_stage.hpp"
+#include "realtime/kernel/clock.hpp"
+#include "realtime/kernel/stage.hpp"
+#include "realtime/sync/freshness.hpp"
+#include "render/views/screen.hpp"
+
+namespace orcart {
+
+struct PanelStageSettings {
+  Eye eye;
+  bool simulated = true;
+  bool software_rendering = true;
+  bool degraded = false;
+  Nanos
+      submit_deadline{};  ///< from dequeue, the sum of the stages' bounds (topology): late is counted from it
+  FreshnessRules freshness;
+};
+
+class PanelStage final : public Stage {
+ public:
+  struct Parts {
+    Panel& panel;
+    Screen& screen;
+    Painter& painter;
+    PainterStage& painter_stage;
+    const Clock& clock;
+    Lanes& lanes;
+    Ledger<FrameRecord>& frames;
+    Ledger<CaptureRecord>& captures;
+  };
+  PanelStage(const Parts& parts, const PanelStageSettings& settings);
+
+  std::string_view name() const noexcept override { return "render + submit"; }
+  StepReport step(Instant now) noexcept override;
+
+  const Status& status() const noexcept { return screen_state_.status; }
+  std::uint64_t presented() const noexcept { return presented_; }
+  /// A person turned the view; takes effect with the next picture. Same thread as step().
+  void look_from(const Eye& eye) noexcept { screen_state_.eye = eye; }
+
+ private:
+  /// What a submitted picture holds, until its flip is known.
+  struct Submitted {
+    std::uint64_t serial = 0;
+    FrameRecord frame;
+    bool has_new_frame = false;
+    std::size_t captures_shown = 0;  ///< ledger length when it was drawn
+    std::uint32_t acknowledged_unit = 0;
+    bool acknowledges = false;
+  };
+  void take_flips(Instant now) noexcept;
+  void settle(const Submitted& shown, Instant scan_out) noexcept;
+  void fill_status(Instant now) noexcept;
+  void choose_notice(Instant now) noexcept;
+  void notice(Notice::Level level, std::string_view text) noexcept;
+
+  Parts parts_;
+  PanelStageSettings settings_;
+  ScreenState screen_state_;
+  TrackerNews tracker_;
+  CameraNews camera_;
+  ScopeNow scope_;
+  std::array<Submitted, 8> submitted_{};
+  std::size_t settled_captures_ = 0;
+  std::uint32_t last_acknowledged_ = 0;
+  Instant acknowledged_scan_out_{};
+  std::uint64_t presented_ = 0;
+  Instant coverage_due_{};
+};
+
+}  // namespace orcart

@@ -1,0 +1,40 @@
+// Both tools must come from one device frame to make a complete sample.
+#include "firmware-host/stages/tracker_stage.hpp"
+
+namespace orcart {
+
+StepReport TrackerStage::step(Instant now) noexcept {
+  const DriverReport report = driver_.step(now);
+  news_.running = report.health == TrackerHealth::live || report.health == TrackerHealth::suspect;
+  if (report.new_reply) {
+    const PoseSample sample = sample_of(driver_.reply());
+    (void)lanes_.poses.try_push(sample);
+    news_.last_reply = sample.arrived_at;
+    news_.scope = sample.scope;
+    news_.reference = sample.reference;
+    if (sample.complete()) news_.last_complete = sample.arrived_at;
+  }
+  lanes_.tracker_news.post(news_);
+  return {.worked = report.worked, .items = report.new_reply ? 1u : 0u};
+}
+
+PoseSample TrackerStage::sample_of(const TrackerReply& reply) noexcept {
+  (void)fit_.observe(reply.device_frame, reply.arrived_at);
+  const ToolReading &scope = reply.tools[0], &reference = reply.tools[1];
+  PoseSample sample{.measured_at = fit_.host_time(reply.device_frame),
+                    .arrived_at = reply.arrived_at,
+                    .device_frame = reply.device_frame,
+                    .scope = scope.state,
+                    .reference = reference.state,
+                    .X_TS = pose_from_quaternion<T, S>(scope.quaternion, scope.translation_mm),
+                    .X_TR = pose_from_quaternion<T, R>(reference.quaternion, reference.translation_mm),
+                    .scope_error_mm = scope.error_mm,
+                    .reference_error_mm = reference.error_mm};
+  if (reply.tool_count < 2) sample.reference = ToolState::unseen;
+  const bool one_frame =
+      scope.device_frame == reply.device_frame && reference.device_frame == reply.device_frame;
+  if (sample.complete() && !one_frame) sample.reference = ToolState::doubtful;
+  return sample;
+}
+
+}  // namespace orcart

@@ -1,0 +1,46 @@
+// Steps the tracker's driver and makes samples of its replies, stamped in host time. Thread: tracker. Rate:
+// when the line has input or the driver is due. Budget: topology, row "tracker".
+#pragma once
+
+#include <algorithm>
+
+#include "firmware-host/stages/lanes.hpp"
+#include "firmware-host/tracker/ndi_driver.hpp"
+#include "realtime/kernel/stage.hpp"
+#include "realtime/sync/clock_fit.hpp"
+
+namespace orcart {
+
+/// Tool 0 of the driver is the scope, tool 1 the reference.
+class TrackerStage final : public Stage {
+ public:
+  TrackerStage(NdiDriver& driver, const ClockFitSettings& clock_fit, Lanes& lanes)
+      : driver_(driver), fit_(clock_fit), lanes_(lanes) {}
+
+  std::string_view name() const noexcept override { return "tracker"; }
+  StepReport step(Instant now) noexcept override;
+
+  const ClockFit& clock_fit() const noexcept { return fit_; }
+
+ private:
+  PoseSample sample_of(const TrackerReply& reply) noexcept;
+
+  NdiDriver& driver_;
+  ClockFit fit_;
+  Lanes& lanes_;
+  TrackerNews news_;
+};
+
+/// What the tracker's thread sleeps on: the line, and what the driver has planned.
+class TrackerWake final : public WakeSource {
+ public:
+  TrackerWake(ByteLink& link, const NdiDriver& driver) : link_(link), driver_(driver) {}
+  void wait(Instant deadline) noexcept override { link_.wait(std::min(deadline, driver_.next_due())); }
+  Instant next_event() const noexcept override { return std::min(link_.next_event(), driver_.next_due()); }
+
+ private:
+  ByteLink& link_;
+  const NdiDriver& driver_;
+};
+
+}  // namespace orcart
