@@ -1,0 +1,76 @@
+// What a session file holds, in the words of the cart. No patient is named anywhere in it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "realtime/base/image.hpp"
+#include "realtime/base/instant.hpp"
+#include "realtime/geometry/pose.hpp"
+#include "realtime/sync/captured_frame.hpp"
+#include "realtime/sync/pose_sample.hpp"
+
+namespace orcart {
+
+/// What a file begins with; stays as it is.
+struct SessionMeta {
+  std::string application = "orcartd";
+  std::string application_version;
+  std::string config_hash;  ///< of cart.toml's bytes
+  std::string started_utc;  ///< ISO 8601; the wall clock at `started_at`
+  Instant started_at{};     ///< every instant in the file is on the same monotonic clock
+};
+
+/// What pictures were painted by. Texts are the files' own.
+struct SessionCalibration {
+  std::string scope_toml;
+  std::string registration_toml;
+  std::string surface_hash;
+};
+
+/// One painted picture, beside its frame.
+struct CaptureFacts {
+  std::uint32_t unit = 0;
+  bool streaming = false;
+  Instant edge_at{};     ///< the pedal's edge
+  Instant matched_at{};  ///< the pose bracket was in hand
+  Instant painted_at{};
+  Pose<M, C> X_MC;
+  PoseKind pose_kind = PoseKind::none;
+  Nanos pose_distance{};  ///< from mid-exposure to the nearest sample
+};
+
+/// A capture as it is read again, without its picture.
+struct StoredCapture {
+  std::int64_t id = 0;  ///< counts from 1, in order of painting
+  CaptureFacts facts;
+  std::uint32_t frame_sequence = 0;
+  Instant exposure_start{}, exposure_end{}, dequeued_at{};
+  bool undone = false;
+};
+
+/// The camera's own bytes, tightly packed, exactly as they were painted.
+struct StoredPicture {
+  int width_px = 0, height_px = 0;
+  PixelFormat format = PixelFormat::none;
+  std::vector<std::byte> bytes;
+
+  ImageDescriptor descriptor() { return packed_image(bytes.data(), format, width_px, height_px); }
+};
+
+struct SessionEvent {
+  Instant at{};
+  std::string kind;
+  std::string text;
+};
+
+/// How a stage kept its budget over the session.
+struct SessionBudget {
+  std::string stage;
+  std::uint64_t count = 0;
+  Nanos p50{}, p99{}, max{};
+  std::uint64_t misses = 0;
+};
+
+}  // namespace orcart

@@ -1,0 +1,30 @@
+// The tables of a session file, and the numbers that say which form they have.
+#pragma once
+
+#include <cstdint>
+
+namespace orcart {
+
+inline constexpr std::int64_t kSessionApplicationId = 0x6F726374;  ///< "orct", in the file's own header
+inline constexpr std::int64_t kSessionSchemaVersion = 1;           ///< PRAGMA user_version
+
+/// Times are nanoseconds on the monotonic clock; m00..m23 the rows of X_MC as in views.csv, millimetres.
+inline constexpr const char* kSessionTables = R"sql(
+CREATE TABLE meta(key TEXT PRIMARY KEY, value) WITHOUT ROWID;
+CREATE TABLE calibration(id INTEGER PRIMARY KEY, scope_toml TEXT, registration_toml TEXT, surface_hash TEXT);
+CREATE TABLE captures(
+  id INTEGER PRIMARY KEY, unit INTEGER, streaming INTEGER, frame_sequence INTEGER, edge_ns INTEGER,
+  exposure_start_ns INTEGER, exposure_end_ns INTEGER, dequeued_ns INTEGER, matched_ns INTEGER, painted_ns INTEGER,
+  pose_kind INTEGER, pose_distance_ns INTEGER,
+  m00 REAL, m01 REAL, m02 REAL, m03 REAL, m10 REAL, m11 REAL, m12 REAL, m13 REAL,
+  m20 REAL, m21 REAL, m22 REAL, m23 REAL, undone INTEGER DEFAULT 0);
+CREATE INDEX captures_by_unit ON captures(unit);
+CREATE TABLE pictures(
+  capture INTEGER PRIMARY KEY REFERENCES captures(id), width_px INTEGER, height_px INTEGER, fourcc INTEGER,
+  encoding TEXT, bytes BLOB);
+CREATE TABLE events(id INTEGER PRIMARY KEY, at_ns INTEGER, kind TEXT, text TEXT);
+CREATE TABLE budgets(
+  stage TEXT PRIMARY KEY, count INTEGER, p50_ns INTEGER, p99_ns INTEGER, max_ns INTEGER, misses INTEGER);
+)sql";
+
+}  // namespace orcart
