@@ -15,7 +15,7 @@ namespace {
 constexpr float kFar_mm = 200;
 constexpr float kLightReference_mm = 10;  ///< at this distance light of gain 1 is 1
 constexpr float kRimSoftness_px = 2.5F;   ///< the picture's own edge, centred on the mask's radius
-constexpr float kTexel_mm = 0.08F;
+constexpr float kTexel_mm = 0.065F;
 constexpr int kCoarse = 97;  ///< fitting_gain looks at every 97th pixel
 constexpr float kMeanWanted = 0.20F, kBrightWanted = 0.75F, kHighestGain = 12;
 

@@ -31,7 +31,7 @@ const Recipe& recipe_for(TissueKind kind) {
       .vein = {0.34F, 0.075F, 0.065F},
       .trunks = {.cell_mm = 9, .width_mm = 0.34F, .presence = 0.36F, .depth = 0.92F},
       .branches = {.cell_mm = 3.6F, .width_mm = 0.15F, .presence = 0.40F, .depth = 0.7F},
-      .capillaries = {.cell_mm = 1.3F, .width_mm = 0.055F, .presence = 0.42F, .depth = 0.34F}};
+      .capillaries = {.cell_mm = 1.3F, .width_mm = 0.075F, .presence = 0.42F, .depth = 0.34F}};
   static const Recipe cortex{
       .pale = {0.66F, 0.38F, 0.32F},
       .flushed = {0.55F, 0.20F, 0.17F},
@@ -77,8 +77,8 @@ TissueSample tissue_sample(const Eigen::Vector3f& point_mm, const LivingTissue& 
   const float mottle = fractal_noise(point_mm / 1.1F, seed + 131, 4);
   const float grain = fractal_noise(point_mm / 0.22F, seed + 151, 2);
   Eigen::Vector3f ground = recipe.pale + 0.75F * flush * (recipe.flushed - recipe.pale);
-  ground *= 1 + 0.28F * mottle + 0.12F * grain;
-  ground.y() *= 1 - 0.16F * mottle;  // the darker speckles are the browner ones
+  ground *= 1 + 0.5F * mottle + 0.2F * grain;
+  ground.y() *= 1 - 0.22F * mottle;  // the darker speckles are the browner ones
   float blood = vessel_at(point_mm, recipe.capillaries, seed + 211);
   blood = std::max(blood, vessel_at(point_mm, recipe.branches, seed + 307));
   blood = std::max(blood, vessel_at(point_mm, recipe.trunks, seed + 401));
