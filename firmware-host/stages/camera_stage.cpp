@@ -17,34 +17,16 @@ StepReport CameraStage::step(Instant) noexcept {
       continue;
     }
     news_.connected = true;
-    count(*buffer);
-    const CapturedFrame frame = stamped(*buffer);
+    const CapturedFrame frame = intake_.accept(*buffer, clock_.now());
     news_.last_frame = frame.exposure_end;
     if (!lanes_.frames.try_push(frame)) source_.give_back(buffer->index);
     ++report.items;
   }
   report.worked = report.items > 0;
+  news_.frozen = intake_.health().frozen;
+  news_.connected = news_.connected && !intake_.health().stamps_faulty;
   lanes_.camera_news.post(news_);
   return report;
-}
-
-CapturedFrame CameraStage::stamped(const FrameBuffer& buffer) const noexcept {
-  const Nanos exposure = buffer.exposure > Nanos{0} ? buffer.exposure : settings_.exposure;
-  const bool at_start = settings_.stamp == FrameStamp::start_of_exposure;
-  const Instant start = at_start ? buffer.stamp : buffer.stamp - exposure;
-  return {.buffer = buffer.index,
-          .sequence = buffer.sequence,
-          .image = buffer.image,
-          .exposure_start = start,
-          .exposure_end = start + exposure,
-          .dequeued_at = clock_.now()};
-}
-
-void CameraStage::count(const FrameBuffer& buffer) noexcept {
-  if (any_ && buffer.sequence > last_sequence_ + 1)
-    news_.sequence_gaps += buffer.sequence - last_sequence_ - 1;
-  last_sequence_ = buffer.sequence;
-  any_ = true;
 }
 
 }  // namespace orcart

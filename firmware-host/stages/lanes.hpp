@@ -29,7 +29,6 @@ struct TrackerNews {
 /// The camera as its stage sees it, for the panel.
 struct CameraNews {
   Instant last_frame{};
-  std::uint32_t sequence_gaps = 0;
   std::uint32_t damaged = 0;
   bool frozen = false;
   bool connected = true;

@@ -9,7 +9,16 @@ PainterStage::PainterStage(const Parts& parts)
       patches_(parts.patches),
       captures_(parts.captures),
       sink_(parts.sink),
+      context_(parts.context),
       holds_(parts.buffer_count, 0) {}
+
+void PainterStage::enter_thread() noexcept {
+  if (context_ != nullptr) (void)context_->make_current();
+}
+
+void PainterStage::leave_thread() noexcept {
+  if (context_ != nullptr) context_->release_current();
+}
 
 StepReport PainterStage::step(Instant now) noexcept {
   StepReport report;

@@ -11,6 +11,7 @@
 #include "firmware-host/stages/lanes.hpp"
 #include "realtime/kernel/stage.hpp"
 #include "render/atlas/painter.hpp"
+#include "render/egl/context.hpp"
 
 namespace orcart {
 
@@ -37,12 +38,15 @@ class PainterStage final : public Stage {
     Lanes& lanes;
     std::vector<CutoutPatch>& patches;
     Ledger<CaptureRecord>& captures;
-    CaptureSink* sink = nullptr;  ///< null: nothing is kept on disk
+    CaptureSink* sink = nullptr;   ///< null: nothing is kept on disk
+    GlContext* context = nullptr;  ///< made current on the thread that steps; null: it is current already
     std::uint32_t buffer_count = 0;
   };
   explicit PainterStage(const Parts& parts);
 
   std::string_view name() const noexcept override { return "upload + paint"; }
+  void enter_thread() noexcept override;
+  void leave_thread() noexcept override;
   StepReport step(Instant now) noexcept override;
 
   const PaintState& state() const noexcept { return state_; }
@@ -65,6 +69,7 @@ class PainterStage final : public Stage {
   std::vector<CutoutPatch>& patches_;
   Ledger<CaptureRecord>& captures_;
   CaptureSink* sink_;
+  GlContext* context_;
   std::vector<std::uint8_t> holds_;  ///< per buffer: how many reasons there are to keep it
   CapturedFrame newest_;
   bool have_newest_ = false;

@@ -61,7 +61,7 @@ StepReport PanelStage::step(Instant now) noexcept {
   if (!target) return {};
   fill_status(now);
   parts_.screen.draw(screen_state_, parts_.painter, *target);
-  const auto serial = parts_.panel.present(now);
+  const auto serial = parts_.panel.present(parts_.clock.now());
   if (!serial) return {};
 
   const PaintState& paint = parts_.painter_stage.state();
@@ -130,8 +130,7 @@ void PanelStage::fill_status(Instant now) noexcept {
 
   screen_state_.show_live = status.video != Freshness::lost;
   screen_state_.scope_predicted = scope_.pose.kind == PoseKind::predicted;
-  const bool show_scope =
-      tracked && scope_.pose.kind != PoseKind::none && now - scope_.at < kScopeShownFor;
+  const bool show_scope = tracked && scope_.pose.kind != PoseKind::none && now - scope_.at < kScopeShownFor;
   screen_state_.X_MC = show_scope ? std::optional(scope_.X_MC) : std::nullopt;
 
   if (paint.version != screen_state_.paint_version || now >= coverage_due_) {

@@ -54,6 +54,7 @@ void* WorkerThread::entry(void* self) {
 }
 
 void WorkerThread::run() noexcept {
+  for (Stage* stage : plan_.stages) stage->enter_thread();
   loop_.begin(clock_.now());
   // Bound: one turn a wake-up, until stop() is called. Partner of the acquire: the release in stop().
   while (!stop_wanted_.load(std::memory_order_acquire)) {
@@ -64,6 +65,7 @@ void WorkerThread::run() noexcept {
     run_stages();
     loop_.turn_over(clock_.now());
   }
+  for (std::size_t i = plan_.stages.size(); i > 0; --i) plan_.stages[i - 1]->leave_thread();
 }
 
 void WorkerThread::sleep_until(Instant due) noexcept {

@@ -1,0 +1,72 @@
+// cart.toml: which devices, tools, files and settings this cart has.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "firmware-host/camera/stamp_meaning.hpp"
+#include "realtime/base/image.hpp"
+#include "realtime/base/instant.hpp"
+#include "realtime/base/result.hpp"
+#include "realtime/geometry/triangle_mesh.hpp"
+#include "realtime/mapper/cutout_patch.hpp"
+
+namespace orcart {
+
+struct TrackerConfig {
+  std::string kind = "simulated";  ///< simulated | tty | tcp
+  std::string device;              ///< tty: its path; tcp: host:port
+  double rate_hz = 60;
+  std::uint32_t baud = 115200;
+  double latency_ms = 0;  ///< from the device frame to its reply being ready, taken off every stamp
+  std::filesystem::path scope_rom, reference_rom;
+};
+
+struct CameraConfig {
+  std::string kind = "simulated";
+  std::string device;
+  int width_px = 640, height_px = 480;
+  PixelFormat format = PixelFormat::yuyv;
+  double rate_hz = 30;
+  double exposure_ms = 8;
+  StampMeaning stamp = StampMeaning::end_of_exposure;
+};
+
+struct PanelConfig {
+  int width_px = 1280, height_px = 800;
+  double refresh_hz = 30;
+};
+
+struct SimulationConfig {
+  std::uint64_t seed = 1;
+  double duration_s = 30;
+  double marker_noise_mm = 0.05;
+  bool picture_noise = true;                               ///< sensor noise, motion blur, specular highlights
+  std::filesystem::path movie;                             ///< where the drawn pictures are kept between runs
+  std::vector<double> entry_direction = {0.4, -0.6, 0.7};  ///< from the surface's centre to the burr hole, M
+};
+
+struct CartConfig {
+  std::filesystem::path file;  ///< where this came from; relative paths in it start there
+  std::string name = "cart";
+  std::filesystem::path surface, scope, registration;
+  SeenFrom seen_from = SeenFrom::outside;
+  double texel_mm = 0.2;
+  TextureMode mode = TextureMode::perspective;
+  TrackerConfig tracker;
+  CameraConfig camera;
+  PanelConfig panel;
+  Nanos tracker_against_video{};  ///< [sync]: added to a frame's mid-exposure before poses are looked up
+  std::vector<double> view_from = {0, -1, 0};  ///< from the surface's centre to the eye, M
+  std::vector<double> view_up = {0, 0, 1};
+  SimulationConfig simulation;
+
+  bool simulated() const { return tracker.kind == "simulated" || camera.kind == "simulated"; }
+};
+
+/// Every error at once, each with its line; unknown keys are refused.
+Result<CartConfig> read_cart(const std::filesystem::path& file);
+
+}  // namespace orcart

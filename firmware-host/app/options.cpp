@@ -1,0 +1,62 @@
+// The command line of orcartd.
+#include "firmware-host/app/options.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include <CLI/CLI.hpp>
+
+namespace orcart {
+
+Result<Nanos> duration_from(const std::string& text) {
+  const std::string accepted =
+      "\"" + text + "\" is no length of time; 30s, 2m, 1500ms or 1h are accepted, up to a day";
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  const std::map<std::string, double> units{{"", 1},   {"s", 1},    {"ms", 1e-3},
+                                            {"m", 60}, {"min", 60}, {"h", 3600}};
+  const auto unit = units.find(end);
+  if (end == text.c_str() || unit == units.end() || !std::isfinite(number)) return fail(accepted);
+  const double length_s = number * unit->second;
+  if (length_s <= 0 || length_s > 86'400) return fail(accepted);
+  return from_seconds(length_s);
+}
+
+tl::expected<Options, int> read_options(int argc, char** argv) {
+  CLI::App app{"orcartd: the resident program of the cart.\nResearch use only; not a medical device."};
+  app.footer("Example:\n  orcartd --cart share/carts/demo.toml --panel png --report out/demo --for 30s");
+  Options options;
+  std::string run_for;
+  app.set_version_flag("--version", ORCART_VERSION);
+  app.add_option("--cart", options.cart, "the cart's configuration")->required();
+  app.add_option("--panel", options.panel,
+                 "png: pictures beside the report; window: a preview on this screen; none")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, PanelKind>{
+          {"png", PanelKind::png}, {"window", PanelKind::window}, {"none", PanelKind::none}}));
+  app.add_option("--clock", options.clock,
+                 "real: the wall clock; simulated: as fast as it can, the same every time")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, ClockKind>{{"real", ClockKind::real}, {"simulated", ClockKind::simulated}}));
+  app.add_option("--for", run_for,
+                 "how long, e.g. 30s; without it until stopped or the simulated procedure ends");
+  app.add_option("--session", options.session, "keep every capture in this *.orcart file");
+  app.add_option("--report", options.report_dir,
+                 "write pictures, report.html and report.json into this folder");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return tl::unexpected(app.exit(error) == 0 ? 0 : 2);
+  }
+  if (!run_for.empty()) {
+    auto length = duration_from(run_for);
+    if (!length) {
+      std::fprintf(stderr, "orcartd: --for %s\n", length.error().message.c_str());
+      return tl::unexpected(2);
+    }
+    options.run_for = *length;
+  }
+  return options;
+}
+
+}  // namespace orcart

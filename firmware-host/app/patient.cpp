@@ -1,0 +1,51 @@
+// Files that do not belong together are refused here, before a thread runs.
+#include "firmware-host/app/patient.hpp"
+
+#include "firmware-host/files/surface_file.hpp"
+
+namespace orcart {
+
+Result<Patient> read_patient(const CartConfig& config) {
+  Patient patient;
+  SurfaceNotes notes;
+  auto surface = read_surface(config.surface, &notes);
+  if (!surface) return tl::unexpected(surface.error());
+  patient.surface = std::move(*surface);
+  patient.notes = std::move(notes.sentences);
+  if (!patient.surface.closed && config.seen_from == SeenFrom::inside) {
+    return fail(config.surface.string() +
+                " is open, so it has no inside; seen_from = \"inside\" wants a closed surface");
+  }
+
+  auto scope = read_scope(config.scope);
+  if (!scope) return tl::unexpected(scope.error());
+  patient.scope = std::move(*scope);
+  if (patient.scope.width_px != config.camera.width_px ||
+      patient.scope.height_px != config.camera.height_px) {
+    return fail(config.scope.string() + " was calibrated at " + std::to_string(patient.scope.width_px) + "x" +
+                std::to_string(patient.scope.height_px) + " pixels, [camera] asks for " +
+                std::to_string(config.camera.width_px) + "x" + std::to_string(config.camera.height_px) +
+                "; use the mode that was calibrated or calibrate this one");
+  }
+
+  auto registration = read_registration(config.registration);
+  if (!registration) return tl::unexpected(registration.error());
+  patient.registration = std::move(*registration);
+  if (patient.registration.surface_hash != patient.surface.identity.hash) {
+    return fail(config.registration.string() + " belongs to the surface " +
+                patient.registration.surface_hash + ", but " + config.surface.string() + " is " +
+                patient.surface.identity.hash +
+                "; register again on this surface, or load the one that was registered");
+  }
+
+  auto layout = build_atlas(patient.surface.mesh, {.texel_mm = config.texel_mm});
+  if (!layout) return tl::unexpected(layout.error());
+  patient.layout = std::move(*layout);
+  if (patient.layout.texel_mm > config.texel_mm * 1.001) {
+    patient.notes.push_back("The surface is large: a texel is " + std::to_string(patient.layout.texel_mm) +
+                            " mm instead of " + std::to_string(config.texel_mm) + " mm.");
+  }
+  return patient;
+}
+
+}  // namespace orcart

@@ -1,0 +1,27 @@
+// What a procedure needs from files, read, checked against each other and laid out before anything is armed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "firmware-host/app/cart_config.hpp"
+#include "firmware-host/files/scope_file.hpp"
+#include "realtime/geometry/triangle_mesh.hpp"
+#include "realtime/optics/scope_model.hpp"
+#include "render/atlas/atlas_layout.hpp"
+
+namespace orcart {
+
+/// The patient's surface with its atlas, the scope's passport, the registration. Immutable once read.
+struct Patient {
+  Surface surface;
+  ScopeModel scope;
+  RegistrationFile registration;
+  AtlasLayout layout;
+  std::vector<std::string> notes;  ///< sentences for the log: what was mended or noticed
+};
+
+/// Refuses a registration that belongs to another surface and a passport that does not fit the camera's size.
+Result<Patient> read_patient(const CartConfig& config);
+
+}  // namespace orcart
