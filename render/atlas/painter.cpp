@@ -7,11 +7,11 @@
 #include <string>
 
 #include "render/atlas/coverage_counter.hpp"
+#include "render/atlas/paint_program.hpp"
 #include "render/atlas/scope_depth.hpp"
 #include "render/atlas/surface_textures.hpp"
 #include "render/atlas/undo_store.hpp"
 #include "render/gles/picture_texture.hpp"
-#include "render/shaders/shaders.hpp"
 
 namespace orcart {
 namespace {
@@ -20,40 +20,10 @@ constexpr int kMaskRow = 2048;   // words in a row of the paper mode's triangle 
 constexpr int kCellTexels = 16;  // what is painted is drawn in squares of this size
 static_assert(kTileTexels % kCellTexels == 0);
 
-struct PaintUniforms {
-  GLint rotation, translation, paper, tip, view, up, side, paper_size, cos_cone;
-};
-
-/// The tangents of the rectified picture that paper mode speaks of: its centre and half extents.
-Eigen::Vector4f paper_frame_of(const ScopeModel& scope) {
-  const auto slope = [&](double dx, double dy) -> Eigen::Vector2d {
-    const double aspect = scope.lens.fy_px / scope.lens.fx_px;
-    const auto d = direction_of(scope.lens, {scope.mask.cx_px + dx * scope.mask.radius_px,
-                                             scope.mask.cy_px + dy * scope.mask.radius_px * aspect});
-    return d ? Eigen::Vector2d(d->x() / d->z(), d->y() / d->z()) : Eigen::Vector2d(dx, dy);
-  };
-  const Eigen::Vector2d left = slope(-1, 0), right = slope(1, 0), top = slope(0, -1), bottom = slope(0, 1);
-  return {static_cast<float>(0.5 * (left.x() + right.x())), static_cast<float>(0.5 * (top.y() + bottom.y())),
-          static_cast<float>(0.5 * (right.x() - left.x())), static_cast<float>(0.5 * (bottom.y() - top.y()))};
-}
-
-void set_lens_uniforms(const gles::Program& program, const ScopeModel& scope) {
-  const Lens& lens = scope.lens;
-  const int model = lens.model == LensModel::brown ? 0 : lens.model == LensModel::poly4 ? 1 : 2;
-  glUniform1i(gles::uniform(program, "u_lens_model"), model);
-  glUniform4f(gles::uniform(program, "u_intrinsics"), static_cast<float>(lens.fx_px),
-              static_cast<float>(lens.fy_px), static_cast<float>(lens.cx_px), static_cast<float>(lens.cy_px));
-  std::array<float, 5> coefficients{};
-  for (std::size_t i = 0; i < 5; ++i) coefficients[i] = static_cast<float>(lens.coefficients[i]);
-  glUniform1fv(gles::uniform(program, "u_coefficients"), 5, coefficients.data());
-  glUniform2f(gles::uniform(program, "u_distortion_centre"),
-              static_cast<float>(lens.distortion_centre_px.x()),
-              static_cast<float>(lens.distortion_centre_px.y()));
-  glUniform4f(gles::uniform(program, "u_circle"), static_cast<float>(scope.mask.cx_px),
-              static_cast<float>(scope.mask.cy_px), static_cast<float>(scope.mask.radius_px),
-              static_cast<float>(std::max(scope.mask.soft_edge_px, 1e-3)));
-  glUniform1f(gles::uniform(program, "u_aspect"), static_cast<float>(lens.fx_px / lens.fy_px));
-  glUniform1f(gles::uniform(program, "u_pixel_rad"), static_cast<float>(1.0 / lens.fx_px));
+/// Half again as fine as the picture, in steps of 64.
+int depth_size_for(const ScopeModel& scope) {
+  const int wished = static_cast<int>(std::ceil(1.5 * 2 * scope.mask.radius_px / 64)) * 64;
+  return std::clamp(wished, 512, 1536);
 }
 
 }  // namespace
@@ -69,11 +39,9 @@ struct Painter::State {
   std::vector<gles::PictureTexture> picture;  ///< exactly one
   gles::Texture atlas, mask;
   gles::Framebuffer framebuffer;
-  gles::Program program;
+  std::vector<PaintProgram> programs;  ///< by TextureMode
   gles::VertexArray vertex_array;
   gles::Buffer rects;
-  PaintUniforms uniforms{};
-  gles::PictureTexture::Uniforms picture_uniforms{};
 
   std::vector<std::uint32_t> seen_cell, seen_tile;  ///< epoch of the view, or step, that touched it last
   std::uint32_t epoch = 0, cells_per_row = 0;
@@ -82,50 +50,32 @@ struct Painter::State {
   std::vector<std::uint32_t> tiles;
   std::vector<ChartRect> quads;
   std::vector<std::uint32_t> mask_words;
-  Pose<C, M> X_CM;
+  PaintView view;
   TextureMode mode = TextureMode::perspective;
-  PaperProjection paper;
   std::uint32_t unit = 0;
 
   KeptAtlas kept() const { return {atlas.id(), framebuffer.id(), layout->width_texels}; }
-  Result<void> make_program();
+  Result<void> make_programs();
   Result<void> make_atlas(const Surface& surface);
   void collect(const CutoutPatch& patch) noexcept;
   void collect_cells(std::uint32_t triangle) noexcept;
   void collect_tile(std::uint32_t cell) noexcept;
-  void set_view() noexcept;
-  void bind_textures() noexcept;
   PaintReport paint_some() noexcept;
 };
 
-Result<void> Painter::State::make_program() {
-  const std::string fragment = std::string(shaders::lens_glsl) + shaders::picture_glsl + shaders::paint_frag;
-  auto made = gles::make_program("paint", shaders::paint_vert, fragment);
-  if (!made) return tl::unexpected(made.error());
-  program = std::move(*made);
-  glUseProgram(program.id());
-  set_lens_uniforms(program, scope);
-  const auto at = [&](const char* name) { return gles::uniform(program, name); };
-  glUniform1f(at("u_atlas_size"), static_cast<float>(layout->width_texels));
-  glUniform1f(at("u_facing"), settings.seen_from == SeenFrom::outside ? 1.0f : -1.0f);
-  glUniform1f(at("u_cos_cone"), static_cast<float>(std::cos(scope.cone_half_angle_rad)));
-  glUniform1f(at("u_far_mm"), static_cast<float>(scope.far_mm));
-  glUniform1f(at("u_cos_obliquity"), static_cast<float>(std::cos(settings.max_obliquity_rad)));
-  const DepthPinhole& pinhole = depth[0].pinhole();
-  glUniform1f(at("u_depth_tangent"), pinhole.tangent);
-  glUniform1f(at("u_depth_near"), pinhole.near_mm);
-  glUniform1f(at("u_depth_far"), pinhole.far_mm);
-  glUniform4f(at("u_fall_off"),
-              settings.even_out_light ? static_cast<float>(scope.fall_off.reference_mm) : 0.0f,
-              static_cast<float>(scope.fall_off.vignetting_cos_power), 0, 0);
-  const Eigen::Vector4f frame = paper_frame_of(scope);
-  glUniform4fv(at("u_paper_frame"), 1, frame.data());
-  const char* units[] = {"u_owner", "u_weights", "u_triangles", "u_vertices",
-                         "u_depth", "u_mask",    "u_points"};
-  for (int unit_number = 0; unit_number < 7; ++unit_number) glUniform1i(at(units[unit_number]), unit_number);
-  uniforms = {at("u_rotation_CM"), at("u_translation_CM"), at("u_paper"),      at("u_tip"),     at("u_view"),
-              at("u_up"),          at("u_side"),           at("u_paper_size"), at("u_cos_cone")};
-  picture_uniforms = gles::PictureTexture::uniforms_of(program);
+Result<void> Painter::State::make_programs() {
+  for (const TextureMode each : {TextureMode::perspective, TextureMode::paper}) {
+    auto made = PaintProgram::create(scope, {.mode = each,
+                                             .atlas_size_texels = layout->width_texels,
+                                             .facing = settings.seen_from == SeenFrom::outside ? 1.0f : -1.0f,
+                                             .max_obliquity_rad = settings.max_obliquity_rad,
+                                             .even_out_light = settings.even_out_light,
+                                             .pinhole = depth[0].pinhole()});
+    if (!made) return tl::unexpected(made.error());
+    programs.push_back(std::move(*made));
+  }
+  view.depth_texture = depth[0].texture();
+  view.mask_texture = mask.id();
   return {};
 }
 
@@ -181,14 +131,37 @@ Result<Painter> Painter::create(const Surface& surface, const AtlasLayout& layou
   }
   const DepthPinhole pinhole{.tangent = static_cast<float>(std::tan(scope.cone_half_angle_rad + 0.03)),
                              .near_mm = 0.3f,
-                             .far_mm = static_cast<float>(scope.far_mm * 1.25)};
+                             .far_mm = static_cast<float>(scope.far_mm * 1.25),
+                             .size_texels = depth_size_for(scope)};
   auto depth = ScopeDepth::create(surface.mesh, pinhole);
   if (!depth) return tl::unexpected(depth.error());
   state->depth.push_back(std::move(*depth));
   state->picture.emplace_back(scope.width_px, scope.height_px);
   if (auto made = state->make_atlas(surface); !made) return tl::unexpected(made.error());
-  if (auto made = state->make_program(); !made) return tl::unexpected(made.error());
-  return Painter(std::move(state));
+  if (auto made = state->make_programs(); !made) return tl::unexpected(made.error());
+  Painter painter(std::move(state));
+  painter.warm_up();
+  return painter;
+}
+
+// Software drivers translate a shader when something is first drawn with it, which takes longer than a frame:
+// here, not there. The pictures are black and the scope is far away, so nothing is painted.
+void Painter::warm_up() {
+  State& s = *state_;
+  const int width = s.scope.width_px, height = s.scope.height_px;
+  std::vector<std::byte> black(packed_bytes(PixelFormat::rgba8888, width, height));
+  CutoutPatch patch(1);
+  patch.triangles.push_back(0);
+  patch.X_MC.translation_mm.setConstant(1e6);
+  for (const PixelFormat format : {PixelFormat::yuyv, PixelFormat::nv12, PixelFormat::rgba8888}) {
+    upload(packed_image(black.data(), format, width, height));
+    paint(patch, 1);
+  }
+  undo();
+  coverage();
+  clear();
+  s.picture.clear();
+  s.picture.emplace_back(width, height);
 }
 
 Painter::Painter(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -237,9 +210,9 @@ void Painter::State::collect(const CutoutPatch& patch) noexcept {
     ++epoch;
     cells.clear();
     painted = 0;
-    X_CM = patch.X_MC.inverse();
+    view.X_CM = patch.X_MC.inverse();
     mode = patch.mode;
-    paper = patch.paper;
+    view.paper = patch.paper;
     if (mode == TextureMode::paper) std::fill(mask_words.begin(), mask_words.end(), 0u);
   }
   for (const std::uint32_t triangle : patch.triangles) {
@@ -253,7 +226,7 @@ PaintReport Painter::paint(const CutoutPatch& patch, std::uint32_t unit) noexcep
   if (s.picture[0].empty() || (patch.mode == TextureMode::paper && !patch.paper.valid)) return {};
   s.collect(patch);
   s.unit = unit;
-  if (patch.mode == TextureMode::perspective) s.depth[0].draw(patch, s.X_CM);
+  if (patch.mode == TextureMode::perspective) s.depth[0].draw(patch, s.view.X_CM);
   if (!patch.last_part) return {};
   if (s.mode == TextureMode::paper) {
     glBindTexture(GL_TEXTURE_2D, s.mask.id());
@@ -290,9 +263,7 @@ PaintReport Painter::State::paint_some() noexcept {
   glViewport(0, 0, layout->width_texels, layout->height_texels);
   glEnable(GL_BLEND);
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  glUseProgram(program.id());
-  set_view();
-  bind_textures();
+  programs[static_cast<std::size_t>(mode)].use(view, surface, picture[0]);
   glBindVertexArray(vertex_array.id());
   glBindBuffer(GL_ARRAY_BUFFER, rects.id());
   glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(quads.size() * sizeof(ChartRect)),
@@ -301,28 +272,6 @@ PaintReport Painter::State::paint_some() noexcept {
   glBindVertexArray(0);
   glDisable(GL_BLEND);
   return report;
-}
-
-void Painter::State::set_view() noexcept {
-  set_pose_uniforms(uniforms.rotation, uniforms.translation, X_CM);
-  glUniform1i(uniforms.paper, mode == TextureMode::paper ? 1 : 0);
-  glUniform3fv(uniforms.tip, 1, paper.tip_mm.data());
-  glUniform3fv(uniforms.view, 1, paper.view.data());
-  glUniform3fv(uniforms.up, 1, paper.up.data());
-  glUniform3fv(uniforms.side, 1, paper.side.data());
-  glUniform2f(uniforms.paper_size, paper.s_size_mm, paper.t_size_mm);
-}
-
-void Painter::State::bind_textures() noexcept {
-  const GLuint textures[] = {surface.owner.id(),    surface.weights.id(), surface.triangles.id(),
-                             surface.vertices.id(), depth[0].texture(),   mask.id(),
-                             surface.points.id()};
-  for (GLenum i = 0; i < 7; ++i) {
-    glActiveTexture(GL_TEXTURE0 + i);
-    glBindTexture(GL_TEXTURE_2D, textures[i]);
-  }
-  picture[0].bind(picture_uniforms, 7);
-  glActiveTexture(GL_TEXTURE0);
 }
 
 bool Painter::undo() noexcept {

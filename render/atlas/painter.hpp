@@ -73,6 +73,8 @@ class Painter {
   const gles::PictureTexture& picture() const noexcept;  ///< the newest upload
 
  private:
+  void warm_up();
+
   struct State;
   std::unique_ptr<State> state_;
   explicit Painter(std::unique_ptr<State> state);

@@ -16,7 +16,7 @@ Result<ScopeDepth> ScopeDepth::create(const TriangleMesh& mesh, const DepthPinho
   ScopeDepth self;
   self.mesh_ = &mesh;
   self.pinhole_ = pinhole;
-  self.depth_ = gles::make_texture({GL_DEPTH_COMPONENT32F, kSize, kSize});
+  self.depth_ = gles::make_texture({GL_DEPTH_COMPONENT32F, pinhole.size_texels, pinhole.size_texels});
   GLuint id = 0;
   glGenFramebuffers(1, &id);
   self.framebuffer_ = gles::Framebuffer(id);
@@ -60,7 +60,7 @@ void ScopeDepth::draw(const CutoutPatch& part, const Pose<C, M>& X_CM) noexcept 
   add(part.triangles);
   add(part.occluders);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-  glViewport(0, 0, kSize, kSize);
+  glViewport(0, 0, pinhole_.size_texels, pinhole_.size_texels);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glEnable(GL_DEPTH_TEST);

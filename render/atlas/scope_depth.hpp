@@ -14,11 +14,11 @@ namespace orcart {
 struct DepthPinhole {
   float tangent = 1;  ///< of the half angle
   float near_mm = 0.3f, far_mm = 80;
+  int size_texels = 1024;
 };
 
 class ScopeDepth {
  public:
-  static constexpr int kSize = 1024;
   static Result<ScopeDepth> create(const TriangleMesh& mesh, const DepthPinhole& pinhole);
 
   /// Adds a part's triangles and occluders; the first part of a view clears. Allocates nothing.

@@ -11,6 +11,7 @@ namespace orcart {
 namespace {
 
 constexpr int kRow = 2048;
+constexpr float kNowhere_mm = 1e9F;  // beyond every far plane
 constexpr std::uint32_t kNothing = 0x7FFFFFFF, kInside = 0x80000000;
 
 int rows_for(std::size_t count) {
@@ -29,20 +30,8 @@ gles::Texture owner_texture(const AtlasLayout& layout) {
   return texture;
 }
 
-gles::Texture weight_texture(const AtlasLayout& layout) {
-  std::vector<float> pairs(layout.owners.size() * 2);
-  for (std::size_t i = 0; i < layout.owners.size(); ++i) {
-    pairs[2 * i] = layout.owners[i].b1;
-    pairs[2 * i + 1] = layout.owners[i].b2;
-  }
-  auto texture = gles::make_texture({GL_RG16F, layout.width_texels, layout.height_texels});
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, layout.width_texels, layout.height_texels, GL_RG, GL_FLOAT,
-                  pairs.data());
-  return texture;
-}
-
 gles::Texture point_texture(const TriangleMesh& mesh, const AtlasLayout& layout) {
-  std::vector<float> points(layout.owners.size() * 4, 0);
+  std::vector<float> points(layout.owners.size() * 4, kNowhere_mm);
   for (std::size_t i = 0; i < layout.owners.size(); ++i) {
     const TexelOwner& owner = layout.owners[i];
     if (owner.triangle == 0xFFFFFFFF) continue;
@@ -75,9 +64,7 @@ float pack_normal(const Eigen::Vector3f& normal) {
 }
 
 SurfaceTextures make_surface_textures(const TriangleMesh& mesh, const AtlasLayout& layout) {
-  SurfaceTextures textures{.owner = owner_texture(layout),
-                           .points = point_texture(mesh, layout),
-                           .weights = weight_texture(layout)};
+  SurfaceTextures textures{.owner = owner_texture(layout), .points = point_texture(mesh, layout)};
 
   const int triangle_rows = rows_for(mesh.triangles.size());
   std::vector<std::uint32_t> corners(static_cast<std::size_t>(triangle_rows) * kRow * 4, 0);

@@ -10,9 +10,8 @@ namespace orcart {
 struct SurfaceTextures {
   gles::Texture
       owner;  ///< R32UI, atlas size: triangle, bit 31 where the centre lies inside it; 0x7FFFFFFF nothing
-  gles::Texture
-      points;  ///< RGBA32F, atlas size: the point behind the texel, M, mm; the normal in w, see pack_normal
-  gles::Texture weights;    ///< RG16F, atlas size: barycentric weights of corners 1 and 2
+  gles::Texture points;  ///< RGBA32F, atlas size: the point behind the texel, M, mm, 1e9 where there is none;
+                         ///< the normal in w, see pack_normal
   gles::Texture triangles;  ///< RGBA32UI, row-wrapped: the three vertices
   gles::Texture vertices;   ///< RGBA32F, row-wrapped: positions in M, mm
 };

@@ -101,8 +101,18 @@ std::span<const std::uint32_t> UndoStore::swap(const Unit& unit) noexcept {
   for (TileMove& move : back_) move = {move.to_x, move.to_y, move.from_x, move.from_y};
   copier_[0].copy(scratch_.id(), {store_framebuffer_.id(), static_cast<int>(slots_per_row_) * kTileTexels},
                   back_);
-  std::fill(kept_in_unit_.begin(), kept_in_unit_.end(), 0u);
+  mark_kept();
   return touched_;
+}
+
+/// After a step back or forth: the unit that is now the newest has kept its tiles already, should it go on.
+void UndoStore::mark_kept() noexcept {
+  std::fill(kept_in_unit_.begin(), kept_in_unit_.end(), 0u);
+  if (newest_ == oldest_) return;
+  const Unit& newest = unit_at(newest_ - 1);
+  for (std::uint64_t i = 0; i < newest.slot_count; ++i) {
+    kept_in_unit_[tile_of_slot_[(newest.first_slot + i) % slots_]] = static_cast<std::uint32_t>(newest_);
+  }
 }
 
 void UndoStore::forget_all() noexcept {

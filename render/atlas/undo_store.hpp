@@ -41,6 +41,7 @@ class UndoStore {
   void begin(std::uint32_t unit) noexcept;
   void make_room(std::size_t slots) noexcept;
   std::span<const std::uint32_t> swap(const Unit& unit) noexcept;
+  void mark_kept() noexcept;
   TileMove move_to_store(std::uint32_t tile, std::uint64_t slot) const noexcept;
 
   KeptAtlas atlas_;

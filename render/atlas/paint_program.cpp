@@ -1,0 +1,114 @@
+// Choices that hold for a whole procedure are compiled in; the rest are uniforms.
+#include "render/atlas/paint_program.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "render/shaders/shaders.hpp"
+
+namespace orcart {
+namespace {
+
+constexpr std::array<const char*, 6> kTextures{"u_points",    "u_depth",    "u_owner",
+                                               "u_triangles", "u_vertices", "u_mask"};
+
+int number_of(LensModel model) {
+  switch (model) {
+    case LensModel::brown:
+      return 0;
+    case LensModel::poly4:
+      return 1;
+    case LensModel::fisheye:
+      break;
+  }
+  return 2;
+}
+
+std::string fragment_source(const ScopeModel& scope, const PaintConstants& constants) {
+  std::string source = "#define LENS_MODEL " + std::to_string(number_of(scope.lens.model)) +
+                       "\n#define EVEN_OUT_LIGHT " + (constants.even_out_light ? "1\n" : "0\n");
+  source += shaders::lens_glsl;
+  source += shaders::picture_glsl;
+  source += shaders::mask_glsl;
+  source += constants.mode == TextureMode::paper ? shaders::paint_paper_frag : shaders::paint_frag;
+  return source;
+}
+
+}  // namespace
+
+Result<PaintProgram> PaintProgram::create(const ScopeModel& scope, const PaintConstants& constants) {
+  PaintProgram self;
+  const char* name = constants.mode == TextureMode::paper ? "paint_paper" : "paint";
+  auto made = gles::make_program(name, shaders::paint_vert, fragment_source(scope, constants));
+  if (!made) return tl::unexpected(made.error());
+  self.program_ = std::move(*made);
+  glUseProgram(self.program_.id());
+  self.set_constants(scope, constants);
+  const auto at = [&](const char* uniform) { return gles::uniform(self.program_, uniform); };
+  for (GLint i = 0; i < static_cast<GLint>(kTextures.size()); ++i)
+    glUniform1i(at(kTextures[static_cast<std::size_t>(i)]), i);
+  self.rotation_ = at("u_rotation_CM");
+  self.translation_ = at("u_translation_CM");
+  self.tip_ = at("u_tip");
+  self.view_ = at("u_view");
+  self.up_ = at("u_up");
+  self.side_ = at("u_side");
+  self.paper_size_ = at("u_paper_size");
+  self.half_width_slope_ = at("u_half_width_slope");
+  self.picture_ = gles::PictureTexture::uniforms_of(self.program_);
+  return self;
+}
+
+void PaintProgram::set_constants(const ScopeModel& scope, const PaintConstants& constants) {
+  const auto set = [&](const char* name, auto... values) {
+    const GLint at = gles::uniform(program_, name);
+    if constexpr (sizeof...(values) == 1) glUniform1f(at, static_cast<float>(values)...);
+    if constexpr (sizeof...(values) == 2) glUniform2f(at, static_cast<float>(values)...);
+    if constexpr (sizeof...(values) == 4) glUniform4f(at, static_cast<float>(values)...);
+  };
+  const Lens& lens = scope.lens;
+  set("u_intrinsics", lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px);
+  std::array<float, 5> coefficients{};
+  std::transform(lens.coefficients.begin(), lens.coefficients.end(), coefficients.begin(),
+                 [](double k) { return static_cast<float>(k); });
+  glUniform1fv(gles::uniform(program_, "u_coefficients"), 5, coefficients.data());
+  set("u_distortion_centre", lens.distortion_centre_px.x(), lens.distortion_centre_px.y());
+  const CircularMask& mask = scope.mask;
+  set("u_circle", mask.cx_px, mask.cy_px, mask.radius_px, std::max(mask.soft_edge_px, 1e-3));
+  set("u_aspect", lens.fx_px / lens.fy_px);
+  set("u_pixel_rad", 1.0 / lens.fx_px);
+  set("u_atlas_size", constants.atlas_size_texels);
+  set("u_facing", constants.facing);
+  set("u_cos_cone", std::cos(std::min(scope.cone_half_angle_rad, lens.max_angle_rad)));
+  set("u_far_mm", scope.far_mm);
+  set("u_cos_obliquity", std::cos(constants.max_obliquity_rad));
+  set("u_depth_tangent", constants.pinhole.tangent);
+  set("u_depth_near", constants.pinhole.near_mm);
+  set("u_depth_far", constants.pinhole.far_mm);
+  set("u_fall_off", scope.fall_off.reference_mm, scope.fall_off.vignetting_cos_power);
+}
+
+void PaintProgram::use(const PaintView& view, const SurfaceTextures& surface,
+                       const gles::PictureTexture& picture) const noexcept {
+  glUseProgram(program_.id());
+  set_pose_uniforms(rotation_, translation_, view.X_CM);
+  glUniform3fv(tip_, 1, view.paper.tip_mm.data());
+  glUniform3fv(view_, 1, view.paper.view.data());
+  glUniform3fv(up_, 1, view.paper.up.data());
+  glUniform3fv(side_, 1, view.paper.side.data());
+  glUniform2f(paper_size_, view.paper.s_size_mm, view.paper.t_size_mm);
+  glUniform1f(half_width_slope_, view.paper.half_width_slope);
+  const std::array<GLuint, kTextures.size()> textures{surface.points.id(),   view.depth_texture,
+                                                      surface.owner.id(),    surface.triangles.id(),
+                                                      surface.vertices.id(), view.mask_texture};
+  for (GLenum i = 0; i < textures.size(); ++i) {
+    glActiveTexture(GL_TEXTURE0 + i);
+    glBindTexture(GL_TEXTURE_2D, textures[i]);
+  }
+  picture.bind(picture_, static_cast<int>(textures.size()));
+  glActiveTexture(GL_TEXTURE0);
+}
+
+}  // namespace orcart
