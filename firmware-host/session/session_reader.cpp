@@ -114,8 +114,9 @@ Result<StoredPicture> SessionReader::picture(std::int64_t capture_id) {
   if (width < 1 || height < 1 || width > kLargestSide_px || height > kLargestSide_px)
     return fail(whose + "a picture of " + std::to_string(width) + "x" + std::to_string(height) +
                 " is not believed");
-  if (statement->text(3) != "deflate")
-    return fail(whose + "encoding '" + statement->text(3) + "' is not known; deflate is accepted");
+  if (statement->text(3) != kPictureEncoding)
+    return fail(whose + "encoding '" + statement->text(3) + "' is not known; " +
+                std::string(kPictureEncoding) + " is accepted");
   StoredPicture picture{.width_px = static_cast<int>(width),
                         .height_px = static_cast<int>(height),
                         .format = static_cast<PixelFormat>(statement->integer(2)),

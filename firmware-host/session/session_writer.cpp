@@ -92,7 +92,7 @@ Result<SessionWriter::Statements> SessionWriter::prepare(Database& database) {
       "?17, ?18, "
       "?19, ?20, ?21, ?22, ?23, ?24, 0)");
   if (!capture) return tl::unexpected(capture.error());
-  auto picture = database.prepare("INSERT INTO pictures VALUES(?1, ?2, ?3, ?4, 'deflate', ?5)");
+  auto picture = database.prepare("INSERT INTO pictures VALUES(?1, ?2, ?3, ?4, ?5, ?6)");
   if (!picture) return tl::unexpected(picture.error());
   auto undone = database.prepare("UPDATE captures SET undone = 1 WHERE unit = ?1");
   if (!undone) return tl::unexpected(undone.error());
@@ -170,7 +170,7 @@ Result<void> SessionWriter::write_capture(const CaptureSlot& slot) {
   const auto picture =
       statements_.picture
           .with(id, image.width_px, image.height_px, static_cast<std::uint32_t>(image.format),
-                deflated(slot.picture(), deflate_buffer_))
+                kPictureEncoding, deflated(slot.picture(), deflate_buffer_))
           .step();
   if (!picture) return tl::unexpected(picture.error());
   captures_ = id;
