@@ -96,7 +96,7 @@ void Mapper::State::sort_triangle(const ClusterTree::Cluster& cluster, std::size
     vertices[c] = cluster.vertex_ids[at];
   }
   const bool painted = facing_of(corners_mm, cone.apex_mm, seen_from, cos_max_obliquity) == Facing::front &&
-                       !occlusion.hidden(surface, vertices, corners_mm);
+                       !(limits.test_occlusion && occlusion.hidden(surface, vertices, corners_mm));
   (painted ? patch.triangles : patch.occluders).push_back(triangle);
 }
 

@@ -16,8 +16,9 @@ namespace orcart {
 /// The work of one next(). Counted work bounds it: the same view gives the same parts on any machine.
 struct MapperLimits {
   std::uint32_t max_triangles_per_step = 60'000;  ///< looked at; more are carried. At least a cluster's 48
-  std::uint32_t max_rays_per_step = 8'000;        ///< traced for occlusion. At least a cluster's 192
+  std::uint32_t max_rays_per_step = 5'000;        ///< traced for occlusion. At least a cluster's 192
   double max_obliquity_rad = 1.3963;  ///< 80 degrees between ray and normal; steeper gets no paint
+  bool test_occlusion = true;         ///< false: what is hidden is left to the painter's depth
 };
 
 /// What both lists of a CutoutPatch must hold: Mapper::next() never puts more into one part.

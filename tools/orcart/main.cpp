@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", ORCART_VERSION);
   int exit_code = 0;
+  orcart::add_bench(app, exit_code);
   orcart::add_surface(app, exit_code);
   CLI11_PARSE(app, argc, argv);
   return exit_code;
