@@ -108,7 +108,8 @@ void add_surface(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<Arguments>();
   SurfaceCommand& command = arguments->command;
   verb->footer(kFooter);
-  verb->add_option("volume", command.region.volume, "NIfTI, NRRD or MetaImage")->required();
+  verb->add_option("volume", command.region.volume, "NIfTI (.nii, .nii.gz), .nrrd or MetaImage (.mha)")
+      ->required();
   verb->add_option("--seed", arguments->seeds, "x,y,z inside the region, mm; may be given more than once")
       ->required()
       ->expected(1)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <vtkFloatArray.h>
@@ -74,6 +75,7 @@ Polygons smoothed(const Polygons& surface, const Extraction& options) {
 TriangleMesh mesh_of(vtkPolyData& surface, const SoftMask& mask) {
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
   const Eigen::Matrix3d axes = steps_of(mask).colwise().normalized();
+  const bool mirrored = axes.determinant() < 0;
   const Eigen::Vector3d origin_mm(mask.origin_mm.data());
   TriangleMesh mesh;
   std::vector<std::uint32_t> index_of(static_cast<std::size_t>(surface.GetNumberOfPoints()), kUnused);
@@ -93,6 +95,7 @@ TriangleMesh mesh_of(vtkPolyData& surface, const SoftMask& mask) {
     if (corners->GetNumberOfIds() != 3) continue;
     mesh.triangles.push_back(
         {vertex(corners->GetId(0)), vertex(corners->GetId(1)), vertex(corners->GetId(2))});
+    if (mirrored) std::swap(mesh.triangles.back()[1], mesh.triangles.back()[2]);
   }
   return mesh;
 }

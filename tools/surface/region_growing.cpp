@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <sstream>
 
 #include <itkBinaryBallStructuringElement.h>
@@ -18,6 +19,7 @@
 #include <itkResampleImageFilter.h>
 
 #include "tools/surface/cavities.hpp"
+#include "tools/surface/plain_bytes.hpp"
 
 namespace orcart {
 
@@ -27,14 +29,39 @@ using Volume = itk::Image<float, 3>;
 using Mask = itk::Image<std::uint8_t, 3>;
 
 constexpr double kMostGridPoints = 100e6;
+constexpr std::uint64_t kMostVoxels = 1'000'000'000;
 
+/// A single file that holds header and voxels; detached voxels could be cut short without a sign.
 itk::ImageIOBase::Pointer reader_of(const std::string& file) {
-  const itk::ImageIOBase::Pointer readers[] = {itk::NiftiImageIO::New().GetPointer(),
-                                               itk::NrrdImageIO::New().GetPointer(),
-                                               itk::MetaImageIO::New().GetPointer()};
-  for (const auto& reader : readers)
-    if (reader->CanReadFile(file.c_str())) return reader;
-  return nullptr;
+  const auto ends = [&](const char* ending) { return file.ends_with(ending); };
+  itk::ImageIOBase::Pointer reader;
+  if (ends(".nii") || ends(".nii.gz")) reader = itk::NiftiImageIO::New();
+  if (ends(".nrrd")) reader = itk::NrrdImageIO::New();
+  if (ends(".mha")) reader = itk::MetaImageIO::New();
+  return reader && reader->CanReadFile(file.c_str()) ? reader : nullptr;
+}
+
+Result<void> check_header(const std::string& file, const itk::ImageIOBase& io) {
+  if (io.GetNumberOfDimensions() != 3)
+    return fail(file + ": has " + std::to_string(io.GetNumberOfDimensions()) + " dimensions; 3 are accepted");
+  if (io.GetNumberOfComponents() != 1)
+    return fail(file + ": has " + std::to_string(io.GetNumberOfComponents()) +
+                " numbers a voxel; one intensity is accepted");
+  if (static_cast<std::uint64_t>(io.GetImageSizeInPixels()) > kMostVoxels)
+    return fail(file + ": has " + std::to_string(io.GetImageSizeInPixels()) + " voxels; up to " +
+                std::to_string(kMostVoxels) + " are accepted");
+  return {};
+}
+
+/// ITK fills what a NIfTI or MetaImage lacks with zeros and says nothing, so the bytes are counted here.
+Result<void> check_length(const std::string& file, const itk::ImageIOBase& io) {
+  std::string header(4096, '\0');
+  std::ifstream(file, std::ios::binary).read(header.data(), static_cast<std::streamsize>(header.size()));
+  const bool counts = !file.ends_with(".nrrd") && header.find("CompressedData = True") == std::string::npos;
+  const auto bytes = static_cast<std::uint64_t>(io.GetImageSizeInBytes());
+  if (!counts || plain_bytes(file, bytes) >= bytes) return {};
+  return fail(file + ": holds fewer than the " + std::to_string(bytes) +
+              " bytes its header says; it is cut short");
 }
 
 Result<Volume::Pointer> read_volume(const std::filesystem::path& path) {
@@ -43,17 +70,14 @@ Result<Volume::Pointer> read_volume(const std::filesystem::path& path) {
     return fail(file + ": is not there; a volume file is expected");
   const auto io = reader_of(file);
   if (!io)
-    return fail(file + ": is no volume; NIfTI (.nii, .nii.gz), NRRD and MetaImage (.mha, .mhd) are accepted");
+    return fail(file + ": is no volume; NIfTI (.nii, .nii.gz), .nrrd and MetaImage (.mha) are accepted");
   auto reader = itk::ImageFileReader<Volume>::New();
   reader->SetImageIO(io);
   reader->SetFileName(file);
+  reader->UpdateOutputInformation();
+  if (auto sound = check_header(file, *io); !sound) return tl::unexpected(sound.error());
+  if (auto sound = check_length(file, *io); !sound) return tl::unexpected(sound.error());
   reader->Update();
-  if (io->GetNumberOfDimensions() != 3)
-    return fail(file + ": has " + std::to_string(io->GetNumberOfDimensions()) +
-                " dimensions; 3 are accepted");
-  if (io->GetNumberOfComponents() != 1)
-    return fail(file + ": has " + std::to_string(io->GetNumberOfComponents()) +
-                " numbers a voxel; one intensity is accepted");
   return reader->GetOutput();
 }
 

@@ -11,7 +11,7 @@
 namespace orcart {
 
 struct RegionGrowing {
-  std::filesystem::path volume;      ///< NIfTI, NRRD or MetaImage
+  std::filesystem::path volume;      ///< .nii, .nii.gz, .nrrd or .mha
   std::vector<PlainPoint> seeds_mm;  ///< LPS
   double lowest = 0, highest = 0;    ///< intensities that belong to the region, both included
   double denoise_mm = 0;             ///< standard deviation of a Gaussian over the volume before growing

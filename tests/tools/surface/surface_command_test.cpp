@@ -1,0 +1,48 @@
+// The whole of `orcart surface` on a small volume: a file that reads back, or no file at all.
+#include "tools/surface/surface_command.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "firmware-host/files/surface_file.hpp"
+#include "tests/tools/surface/sample_volume.hpp"
+
+namespace orcart {
+namespace {
+
+SurfaceCommand command(const TemporaryFolder& folder, const PlainPoint& seed) {
+  SurfaceCommand made{
+      .region = {.volume = dark_ball(10).write(folder), .seeds_mm = {seed}, .lowest = 0, .highest = 48},
+      .extraction = {.triangles = 800},
+      .out = folder / "ball.ply"};
+  return made;
+}
+
+TEST(SurfaceCommand, WritesAClosedSurfaceWithItsFigures) {
+  const TemporaryFolder folder;
+  std::vector<int> steps;
+  const auto figures = make_surface_file(command(folder, {20, 20, 20}),
+                                         [&](int step, int, const std::string&) { steps.push_back(step); });
+  ASSERT_TRUE(figures) << figures.error().message;
+  EXPECT_EQ(steps, (std::vector{1, 2, 3}));
+  EXPECT_TRUE(figures->closed);
+  EXPECT_EQ(figures->euler_number, 2);
+  EXPECT_NEAR(figures->volume_ml, 4.19, 0.15);
+  EXPECT_NEAR(figures->area_mm2, 4 * std::numbers::pi * 100, 40);
+  const auto surface = read_surface(folder / "ball.ply");
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_EQ(surface->identity.hash, figures->hash);
+  EXPECT_EQ(surface->identity.series, "volume.mha");
+  EXPECT_EQ(surface->mesh.triangles.size(), figures->triangles);
+}
+
+TEST(SurfaceCommand, LeavesNoFileWhereItFails) {
+  const TemporaryFolder folder;
+  EXPECT_FALSE(make_surface_file(command(folder, {2, 2, 2}), [](int, int, const std::string&) {}));
+  EXPECT_FALSE(std::filesystem::exists(folder / "ball.ply"));
+}
+
+}  // namespace
+}  // namespace orcart
