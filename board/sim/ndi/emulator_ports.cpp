@@ -67,6 +67,14 @@ void NdiEmulator::suffer_tool_faults(Instant now) noexcept {
   }
 }
 
+bool NdiEmulator::plug_in(std::span<const std::byte> definition) noexcept {
+  const auto free =
+      std::find_if(plugged_in_.begin(), plugged_in_.end(), [](const auto& port) { return !port.occupied(); });
+  if (free == plugged_in_.end()) return false;
+  free->allocate();
+  return free->write(0, definition) == NdiError::none;
+}
+
 NdiError NdiEmulator::on_phrq(std::string_view arguments, const Moment&) noexcept {
   if (arguments.size() != 14) return NdiError::wrong_parameters;
   const auto free =

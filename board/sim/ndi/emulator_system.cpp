@@ -24,6 +24,8 @@ bool within(char letter, char last) noexcept {
 
 NdiError NdiEmulator::on_init(std::string_view, const Moment&) noexcept {
   for (EmulatedPort& port : ports_) port.release();
+  const auto occupied = [](const EmulatedPort& port) { return port.occupied(); };
+  std::copy_if(plugged_in_.begin(), plugged_in_.end(), ports_.begin(), occupied);
   initialised_ = true;
   tracking_ = false;
   return okay();

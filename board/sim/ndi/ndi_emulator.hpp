@@ -40,6 +40,10 @@ class NdiEmulator {
 
   NdiEmulator(const NdiEmulatorSettings& settings, const ToolMotion& motion);
 
+  /// Puts a tool into a port, as a wired one is: after INIT it has a handle that is not initialised yet. At
+  /// most 4; false where there are more, or the definition is too long.
+  bool plug_in(std::span<const std::byte> definition) noexcept;
+
   /// Bytes that the host hands over at `now`; they take their time over the line.
   void receive(std::span<const std::byte> bytes, Instant now) noexcept;
   /// What arrives while host and device use different line rates: the device can make nothing of it.
@@ -144,6 +148,7 @@ class NdiEmulator {
   DeviceClock clock_;
   NdiFaultSchedule faults_;
   std::array<EmulatedPort, kMaxPorts> ports_;
+  std::array<EmulatedPort, 4> plugged_in_;
   UserParameters parameters_;
   ReplyQueue replies_;
   WireText reply_;

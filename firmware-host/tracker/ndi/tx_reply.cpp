@@ -12,7 +12,6 @@ constexpr float kErrorUnit = 1e-4F;
 constexpr std::size_t kPositionLetters = 21;
 
 void read_transform(TextCursor& cursor, HandleReading& reading) noexcept {
-  reading.status = HandleStatus::valid;
   reading.has_transform = true;
   for (float& part : reading.quaternion)
     part = static_cast<float>(cursor.signed_decimal(6)) * kQuaternionUnit;
@@ -25,11 +24,16 @@ void read_transform(TextCursor& cursor, HandleReading& reading) noexcept {
 /// What follows port status and frame up to the line feed is asked for by other options, and passed over.
 void read_handle(TextCursor& cursor, std::uint16_t options, HandleReading& reading) noexcept {
   reading.handle = static_cast<std::uint8_t>(cursor.hex(2));
+  reading.status = HandleStatus::valid;  // unless a word says otherwise
   const bool absent = cursor.take_word("DISABLED") || cursor.take_word("UNOCCUPIED");
   if (absent) {
     reading.status = HandleStatus::disabled;
   } else if ((options & kTransforms) != 0) {
-    if (!cursor.take_word("MISSING")) read_transform(cursor, reading);
+    if (cursor.take_word("MISSING")) {
+      reading.status = HandleStatus::missing;
+    } else {
+      read_transform(cursor, reading);
+    }
     reading.port_status = cursor.hex(8);
     reading.frame = cursor.hex(8);
   }

@@ -1,0 +1,68 @@
+// Recorded dialogues in their three notations.
+#include "firmware-host/tracker/ndi/dialogue_figures.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/firmware-host/tracker/ndi/wire_samples.hpp"
+
+namespace orcart::ndi {
+namespace {
+
+void expect_init_and_okay(const Result<Dialogue>& dialogue) {
+  ASSERT_TRUE(dialogue);
+  ASSERT_EQ(dialogue->size(), 2u);
+  EXPECT_EQ((*dialogue)[0].speaker, Speaker::host);
+  EXPECT_EQ((*dialogue)[0].bytes, "INIT:E3A5\r");
+  EXPECT_EQ((*dialogue)[1].bytes, "OKAYA896\r");
+}
+
+TEST(Dialogue, IsReadInEachNotation) {
+  expect_init_and_okay(parse_dialogue(
+      "11.4 : (INFO) 1. command[10] INIT:E3A5\\x0D\n11.5 : (INFO) 1. receive[9] OKAYA896\\x0D\n", "log"));
+  expect_init_and_okay(
+      parse_dialogue("# recorded\n\n1. command[10] INIT:E3A5\n1. receive[9] OKAYA896\n", "bin"));
+  expect_init_and_okay(parse_dialogue("sent:0001 = INIT:E3A5\nrecv:0001 = OKAYA896\nsent:0002 = \n", "text"));
+}
+
+TEST(Dialogue, JoinsLinesOfOneReply) {
+  const auto dialogue = parse_dialogue("sent:0001 = VER:4A6EF\nrecv:0001 = Polaris\nE2CA\n", "text");
+  ASSERT_TRUE(dialogue);
+  EXPECT_EQ(dialogue->back().bytes, "Polaris\nE2CA\r");
+}
+
+TEST(Dialogue, ThatHoldsNothingIsRefused) {
+  for (const std::string_view content :
+       {std::string_view{}, std::string_view{"hello"}, std::string_view{". command["},
+        std::string_view{"1. command[99999999999] x"}}) {
+    EXPECT_FALSE(parse_dialogue(content, "x"));
+  }
+}
+
+TEST(Dialogue, IsSafeWhereverItIsCutShort) {
+  const std::string whole =
+      "1. command[12] BX:0001C26D\n1. receive[31] " + testing::kTwoMissing + "\n2. command[10] INIT:E3A5\n";
+  for (std::size_t size = 0; size <= whole.size(); ++size) {
+    const auto dialogue = parse_dialogue(std::string_view(whole).substr(0, size), "x");
+    if (dialogue) (void)count_dialogue(*dialogue);
+  }
+}
+
+TEST(DialogueFigures, CountCommandsRepliesAndWhatTheySay) {
+  const Dialogue dialogue{{Speaker::host, 1, "BX:0001C26D\r"}, {Speaker::device, 1, testing::kOneSeen},
+                          {Speaker::host, 2, "PDIS:03D3E7\r"}, {Speaker::device, 2, "ERROR086D02\r"},
+                          {Speaker::host, 3, "INIT:0000\r"},   {Speaker::host, 4, "INIT:E3A5\r"},
+                          {Speaker::device, 4, "OKAYA896"}};
+  const DialogueFigures figures = count_dialogue(dialogue);
+  EXPECT_EQ(figures.commands, 4u);
+  EXPECT_EQ(figures.replies, 3u);
+  EXPECT_EQ(figures.crc_good, 7u);
+  EXPECT_EQ(figures.crc_bad, 1u);
+  EXPECT_EQ(figures.transforms, 1u);
+  EXPECT_EQ(figures.missing, 1u);
+  EXPECT_EQ(figures.errors, 1u);
+  EXPECT_EQ(figures.unanswered, 2u);
+  EXPECT_EQ(figures.remarks.size(), 4u);
+}
+
+}  // namespace
+}  // namespace orcart::ndi
