@@ -20,7 +20,7 @@ run_ctest() {
   not_run=$(($(junit_count skipped "$results") + $(junit_count disabled "$results")))
   if [ "$status" -ne 0 ]; then
     grep -vE '  (Passed|\*\*\*Skipped) |^ *Start +[0-9]+:|^$' "$log" | tail -n 200
-    [ "$bad" -gt 0 ] || bad=1
+    [ "$bad" -gt 0 ] || bad=1 all=$((all + 1))
   fi
   say "$all tests, $bad failed, $not_run skipped"
   skip_reasons "$dir/Testing/Temporary/LastTest.log"
