@@ -8,6 +8,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", ORCART_VERSION);
   int exit_code = 0;
   orcart::add_bench(app, exit_code);
+  orcart::add_decode(app, exit_code);
+  orcart::add_emulate(app, exit_code);
   orcart::add_surface(app, exit_code);
   CLI11_PARSE(app, argc, argv);
   return exit_code;

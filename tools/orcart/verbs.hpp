@@ -7,6 +7,7 @@ namespace orcart {
 
 /// Each verb sets `exit_code` in its callback: 0 only on success. Errors are one sentence on stderr.
 void add_bench(CLI::App& app, int& exit_code);
+void add_decode(CLI::App& app, int& exit_code);
 void add_emulate(CLI::App& app, int& exit_code);
 void add_surface(CLI::App& app, int& exit_code);
 

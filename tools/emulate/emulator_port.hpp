@@ -1,0 +1,38 @@
+// Where a client of the emulated tracker comes in: a pseudo-terminal, or a TCP port of this machine.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "board/linux/file_descriptor.hpp"
+#include "realtime/base/instant.hpp"
+#include "realtime/base/result.hpp"
+
+namespace orcart {
+
+/// One client at a time; after it has gone the next may come. One thread.
+class EmulatorPort {
+ public:
+  virtual ~EmulatorPort() = default;
+  /// What a client has to be told to open.
+  virtual const std::string& name() const = 0;
+  /// Sleeps until the client sent something or `time` is over; at most a few milliseconds where no client is
+  /// there.
+  virtual void wait(Nanos time) = 0;
+  /// 0 where there is nothing, or nobody.
+  virtual std::size_t read(std::span<std::byte> into) = 0;
+  virtual void write(std::span<const std::byte> bytes) = 0;
+  /// The baud rate that the client has set; 0 where it cannot be told, or nobody is there.
+  virtual std::uint32_t baud() = 0;
+};
+
+Result<std::unique_ptr<EmulatorPort>> open_pseudo_terminal();
+
+struct ListenAddress {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8765;  ///< 0: any free one
+};
+Result<std::unique_ptr<EmulatorPort>> open_tcp_port(const ListenAddress& at);
+
+}  // namespace orcart
