@@ -1,17 +1,16 @@
 // What is written to a session is what is read from it; what cannot be written or read is told in one
 // sentence.
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
 #include "firmware-host/session/session_reader.hpp"
 #include "firmware-host/session/session_writer.hpp"
+#include "tests/firmware-host/session/full_disk.hpp"
 #include "tests/firmware-host/session/session_samples.hpp"
 
 namespace orcart {
@@ -19,6 +18,7 @@ namespace {
 
 using testing::facts_number;
 using testing::frame_number;
+using testing::FullDisk;
 using testing::SessionFolder;
 
 constexpr std::size_t kBytes = packed_bytes(PixelFormat::yuyv, testing::kWidth_px, testing::kHeight_px);
@@ -172,27 +172,6 @@ TEST_F(SessionFile, TellsThatItsFolderMayNotBeWrittenTo) {
   ASSERT_FALSE(made);
   EXPECT_NE(made.error().message.find("Permission denied"), std::string::npos) << made.error().message;
 }
-
-/// While it lives, no file of this process grows beyond `bytes`: what a full disk does to a write.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    old_handler_ = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, old_handler_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  rlimit before_{};
-  void (*old_handler_)(int) = nullptr;
-};
 
 TEST_F(SessionFile, ReturnsAnErrorOnAFullDiskLosesNothingWrittenAndGoesOnWhenThereIsRoom) {
   SessionWriter session = writer();
