@@ -58,7 +58,7 @@ class TomlSection {
                      std::optional<std::string_view> fallback = std::nullopt) const {
     return choice(key, std::span(words.begin(), words.size()), fallback);
   }
-  /// choice_of("medium", {{"air", Medium::air}, {"water", Medium::water}}, Medium::air)
+  /// choice_of<Medium>("medium", {{"air", Medium::air}, {"water", Medium::water}}, Medium::air)
   template <class Enum>
   Enum choice_of(std::string_view key, std::initializer_list<std::pair<std::string_view, Enum>> words,
                  std::optional<Enum> fallback = std::nullopt) const;
