@@ -1,4 +1,4 @@
-// Each changed tile is one fragment of a small picture, which is read back.
+// Each changed tile is a few fragments of a small picture, which is read back.
 #include "render/atlas/coverage_counter.hpp"
 
 #include <algorithm>
@@ -17,11 +17,10 @@ Result<CoverageCounter> CoverageCounter::create(const KeptAtlas& atlas, GLuint o
   if (!program) return tl::unexpected(program.error());
   self.program_ = std::move(*program);
   glUseProgram(self.program_.id());
-  glUniform1i(gles::uniform(self.program_, "u_tile_size"), kTileTexels);
   glUniform1f(gles::uniform(self.program_, "u_grid_size"), static_cast<float>(self.grid_));
   self.owner_unit_ = gles::uniform(self.program_, "u_owner");
   self.atlas_unit_ = gles::uniform(self.program_, "u_atlas");
-  self.counts_ = gles::make_texture({GL_RGBA8, self.grid_, self.grid_});
+  self.counts_ = gles::make_texture({GL_RGBA8, self.grid_ * kPartsPerSide, self.grid_ * kPartsPerSide});
   auto framebuffer = gles::make_framebuffer(self.counts_.id());
   if (!framebuffer) return tl::unexpected(framebuffer.error());
   self.framebuffer_ = std::move(*framebuffer);
@@ -37,7 +36,7 @@ Result<CoverageCounter> CoverageCounter::create(const KeptAtlas& atlas, GLuint o
   self.changed_.reserve(tiles);
   self.is_changed_.assign(tiles, 0);
   self.of_tile_.assign(tiles, 0);
-  self.read_.resize(tiles * 4);
+  self.read_.resize(tiles * kPartsPerSide * kPartsPerSide * 4);
   return self;
 }
 
@@ -64,6 +63,18 @@ double CoverageCounter::update() noexcept {
   return static_cast<double>(painted_) / static_cast<double>(texels_);
 }
 
+/// The sum of a tile's parts in what was read.
+std::uint16_t CoverageCounter::counted(std::uint32_t tile) const noexcept {
+  const auto grid = static_cast<std::size_t>(grid_);
+  unsigned sum = 0;
+  for (std::size_t y = 0; y < kPartsPerSide; ++y) {
+    const std::size_t row = tile / grid * kPartsPerSide + y, column = tile % grid * kPartsPerSide;
+    for (std::size_t x = 0; x < kPartsPerSide; ++x)
+      sum += read_[4 * (row * grid * kPartsPerSide + column + x)];
+  }
+  return static_cast<std::uint16_t>(sum);
+}
+
 void CoverageCounter::count(std::span<const std::uint32_t> tiles) noexcept {
   std::array<std::uint16_t, kTilesPerCall * 4> places{};
   for (std::size_t i = 0; i < tiles.size(); ++i) {
@@ -71,7 +82,8 @@ void CoverageCounter::count(std::span<const std::uint32_t> tiles) noexcept {
     places[4 * i + 1] = static_cast<std::uint16_t>(tiles[i] / static_cast<std::uint32_t>(grid_));
   }
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-  glViewport(0, 0, grid_, grid_);
+  const int side = grid_ * kPartsPerSide;
+  glViewport(0, 0, side, side);
   glDisable(GL_BLEND);
   glUseProgram(program_.id());
   glUniform1i(owner_unit_, 0);
@@ -86,9 +98,9 @@ void CoverageCounter::count(std::span<const std::uint32_t> tiles) noexcept {
                   places.data());
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(tiles.size()));
   glBindVertexArray(0);
-  glReadPixels(0, 0, grid_, grid_, GL_RGBA, GL_UNSIGNED_BYTE, read_.data());
+  glReadPixels(0, 0, side, side, GL_RGBA, GL_UNSIGNED_BYTE, read_.data());
   for (const std::uint32_t tile : tiles) {
-    const auto now = static_cast<std::uint16_t>(read_[4 * tile] | read_[4 * tile + 1] << 8);
+    const std::uint16_t now = counted(tile);
     painted_ += now;
     painted_ -= of_tile_[tile];
     of_tile_[tile] = now;

@@ -22,7 +22,9 @@ class CoverageCounter {
 
  private:
   static constexpr std::size_t kTilesPerCall = 512;
+  static constexpr int kPartsPerSide = kTileTexels / 8;  ///< of a tile, each counted by one fragment
   CoverageCounter() = default;
+  std::uint16_t counted(std::uint32_t tile) const noexcept;
   void count(std::span<const std::uint32_t> tiles) noexcept;
 
   KeptAtlas atlas_;

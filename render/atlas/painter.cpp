@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kMaskRow = 2048;   // words in a row of the paper mode's triangle mask
 constexpr int kCellTexels = 16;  // what is painted is drawn in squares of this size
+const Eigen::AlignedBox3f kEverything(Eigen::Vector3f::Constant(-1e9F), Eigen::Vector3f::Constant(1e9F));
 static_assert(kTileTexels % kCellTexels == 0);
 
 /// Half again as fine as the picture, in steps of 64.
@@ -50,6 +51,10 @@ struct Painter::State {
   std::vector<std::uint32_t> tiles;
   std::vector<ChartRect> quads;
   std::vector<std::uint32_t> mask_words;
+  const TriangleMesh* mesh = nullptr;
+  std::array<Eigen::AlignedBox3f, 16> touched{};  ///< by change number, modulo
+  std::uint64_t changes = 0;
+  Eigen::AlignedBox3f view_box;  ///< of the view's triangles
   PaintView view;
   TextureMode mode = TextureMode::perspective;
   std::uint32_t unit = 0;
@@ -61,6 +66,7 @@ struct Painter::State {
   void collect_cells(std::uint32_t triangle) noexcept;
   void collect_tile(std::uint32_t cell) noexcept;
   PaintReport paint_some() noexcept;
+  void note_change(const Eigen::AlignedBox3f& box) noexcept { touched[++changes % touched.size()] = box; }
 };
 
 Result<void> Painter::State::make_programs() {
@@ -123,6 +129,7 @@ Result<Painter> Painter::create(const Surface& surface, const AtlasLayout& layou
                                 const PainterSettings& settings) {
   auto state = std::make_unique<State>();
   state->layout = &layout;
+  state->mesh = &surface.mesh;
   state->scope = scope;
   state->settings = settings;
   constexpr double kWidest = 1.4;  // 80 degrees: beyond, a pinhole depth picture has no resolution left
@@ -210,6 +217,7 @@ void Painter::State::collect(const CutoutPatch& patch) noexcept {
     ++epoch;
     cells.clear();
     painted = 0;
+    view_box.setEmpty();
     view.X_CM = patch.X_MC.inverse();
     mode = patch.mode;
     view.paper = patch.paper;
@@ -218,6 +226,7 @@ void Painter::State::collect(const CutoutPatch& patch) noexcept {
   for (const std::uint32_t triangle : patch.triangles) {
     if (mode == TextureMode::paper) mask_words[triangle >> 5] |= 1u << (triangle & 31);
     collect_cells(triangle);
+    for (const std::uint32_t corner : mesh->triangles[triangle]) view_box.extend(mesh->vertices_mm[corner]);
   }
 }
 
@@ -257,6 +266,7 @@ PaintReport Painter::State::paint_some() noexcept {
   report.painted = !quads.empty();
   report.carried = painted < cells.size();
   if (!report.painted) return report;
+  note_change(view_box);
   undo[0].keep(unit, tiles);
   coverage[0].touch(tiles);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
@@ -275,18 +285,21 @@ PaintReport Painter::State::paint_some() noexcept {
 }
 
 bool Painter::undo() noexcept {
+  state_->note_change(kEverything);
   const auto tiles = state_->undo[0].undo();
   state_->coverage[0].touch(tiles);
   return !tiles.empty();
 }
 
 bool Painter::redo() noexcept {
+  state_->note_change(kEverything);
   const auto tiles = state_->undo[0].redo();
   state_->coverage[0].touch(tiles);
   return !tiles.empty();
 }
 
 void Painter::clear() noexcept {
+  state_->note_change(kEverything);
   glBindFramebuffer(GL_FRAMEBUFFER, state_->framebuffer.id());
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT);
@@ -315,6 +328,16 @@ AtlasPicture Painter::read_back() const {
     }
   }
   return picture;
+}
+
+std::uint64_t Painter::changes() const noexcept {
+  return state_->changes;
+}
+
+Eigen::AlignedBox3f Painter::touched_by(std::uint64_t change) const noexcept {
+  const State& s = *state_;
+  const bool remembered = change > 0 && change <= s.changes && s.changes - change < s.touched.size();
+  return remembered ? s.touched[change % s.touched.size()] : kEverything;
 }
 
 std::uint32_t Painter::atlas_texture() const noexcept {

@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "realtime/base/image.hpp"
 #include "realtime/base/result.hpp"
 #include "realtime/geometry/triangle_mesh.hpp"
@@ -68,6 +70,12 @@ class Painter {
   /// few times a second.
   double coverage() noexcept;
   AtlasPicture read_back() const;
+
+  /// How often the atlas was changed so far, and the box of M (mm) that holds what the n-th change touched (1
+  /// is the first). The newest 16 are remembered; older ones, and steps back and forth, may have touched
+  /// everything.
+  std::uint64_t changes() const noexcept;
+  Eigen::AlignedBox3f touched_by(std::uint64_t change) const noexcept;
 
   std::uint32_t atlas_texture() const noexcept;          ///< GL name, RGBA8, colour premultiplied by alpha
   const gles::PictureTexture& picture() const noexcept;  ///< the newest upload

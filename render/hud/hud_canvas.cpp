@@ -82,6 +82,20 @@ void HudCanvas::text_centred(HudPoint at, TextStyle style, Colour colour, std::s
   text({at.x - 0.5F * font_.width_px(style, utf8), at.y}, style, colour, utf8);
 }
 
+// Clearing costs a software driver a tenth of drawing.
+void HudCanvas::ground(const HudBox& box, Colour colour) noexcept {
+  const float y = settings_.rows == RowOrder::top_first
+                      ? box.y
+                      : static_cast<float>(settings_.height_px) - box.y - box.height;
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(static_cast<GLint>(box.x), static_cast<GLint>(y), static_cast<GLsizei>(std::ceil(box.width)),
+            static_cast<GLsizei>(std::ceil(box.height)));
+  glClearColor(static_cast<float>(colour.r) / 255, static_cast<float>(colour.g) / 255,
+               static_cast<float>(colour.b) / 255, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glDisable(GL_SCISSOR_TEST);
+}
+
 // The rectangle drawn is one pixel larger all round than the shape, for its soft edge.
 void HudCanvas::box(const HudBox& box, float radius_px, Colour colour) noexcept {
   add({{box.x - 1, box.y - 1, box.width + 2, box.height + 2}, {}, colour, {kBox, radius_px, 0, 0}});

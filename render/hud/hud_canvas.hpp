@@ -45,6 +45,8 @@ class HudCanvas {
   void text_ending(HudPoint at, TextStyle style, Colour colour, std::string_view utf8) noexcept;
   /// The same, its middle at `at`.
   void text_centred(HudPoint at, TextStyle style, Colour colour, std::string_view utf8) noexcept;
+  /// A plain ground, whole pixels, at once: under everything that is gathered.
+  void ground(const HudBox& box, Colour colour) noexcept;
   void box(const HudBox& box, float radius_px, Colour colour) noexcept;
   void outline(const HudBox& box, float radius_px, float width_px, Colour colour) noexcept;
   void disc(HudPoint centre, float radius_px, Colour colour) noexcept;

@@ -204,8 +204,8 @@ PanelLayout panel_layout(int width_px, int height_px) noexcept {
 }
 
 void draw_grounds(HudCanvas& canvas, const PanelLayout& layout) noexcept {
-  canvas.box(layout.column, 0, kGround);
-  canvas.box(layout.bar, 0, kGround);
+  canvas.ground(layout.column, kGround);
+  canvas.ground(layout.bar, kGround);
   const HudBox& bar = layout.bar;
   canvas.stroke({.from = {bar.x, bar.y}, .to = {bar.x + bar.width, bar.y}, .width_px = 1}, kLine);
   canvas.stroke({.from = {layout.column.x, 0}, .to = {layout.column.x, bar.y}, .width_px = 1}, kLine);

@@ -18,6 +18,25 @@
 #include "render/views/surface_view.hpp"
 
 namespace orcart {
+namespace {
+
+/// Every square of `finer` x `finer` pixels becomes one.
+AtlasPicture averaged(const std::vector<std::uint8_t>& fine, const ScreenSettings& settings, int finer) {
+  AtlasPicture picture{.width_texels = settings.width_px, .height_texels = settings.height_px, .rgba = {}};
+  const auto width = static_cast<std::size_t>(settings.width_px), step = static_cast<std::size_t>(finer);
+  picture.rgba.resize(4 * width * static_cast<std::size_t>(settings.height_px));
+  for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+    const std::size_t channel = i % 4, x = i / 4 % width * step, y = i / 4 / width * step;
+    unsigned sum = 0;
+    for (std::size_t row = y; row < y + step; ++row)
+      for (std::size_t column = x; column < x + step; ++column)
+        sum += fine[4 * (row * width * step + column) + channel];
+    picture.rgba[i] = static_cast<std::uint8_t>((sum + step * step / 2) / (step * step));
+  }
+  return picture;
+}
+
+}  // namespace
 
 struct Screen::State {
   ScreenSettings settings;
@@ -31,11 +50,13 @@ struct Screen::State {
   gles::VertexArray no_attributes;
   gles::PictureTexture::Uniforms picture_uniforms{};
   Eye drawn_eye;
-  std::uint64_t drawn_version = 0;
+  std::uint64_t drawn_version = 0, drawn_changes = 0;
   bool drawn = false;
   bool reads_bgra = false;
 
   Result<void> make_inset();
+  void warm_up();
+  void redraw(const ScreenState& state, const Painter& painter) noexcept;
   void draw_inset(const gles::PictureTexture& live) noexcept;
   bool read_into(const ImageDescriptor& target) noexcept;
 };
@@ -83,7 +104,27 @@ Result<Screen> Screen::create(const Surface& surface, const AtlasLayout& layout,
   if (auto made = state->make_inset(); !made) return tl::unexpected(made.error());
   const char* extensions = reinterpret_cast<const char*>(glGetString(GL_EXTENSIONS));
   state->reads_bgra = extensions != nullptr && std::strstr(extensions, "GL_EXT_read_format_bgra") != nullptr;
+  state->warm_up();
   return Screen(std::move(state));
+}
+
+// Draws everything once, for software drivers translate a shader when something is first drawn with it.
+void Screen::State::warm_up() {
+  const gles::Texture unpainted = gles::make_texture({GL_RGBA8, 1, 1, GL_LINEAR});
+  Eye eye;
+  eye.position_mm = {0, 0, 1};
+  view[0].draw(eye, unpainted.id(), {});
+  std::vector<std::byte> black(packed_bytes(PixelFormat::rgba8888, scope.width_px, scope.height_px));
+  gles::PictureTexture live(scope.width_px, scope.height_px);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+  glViewport(0, 0, settings.width_px, settings.height_px);
+  for (const PixelFormat format : {PixelFormat::yuyv, PixelFormat::nv12, PixelFormat::rgba8888}) {
+    live.upload(packed_image(black.data(), format, scope.width_px, scope.height_px));
+    draw_inset(live);
+  }
+  draw_status(canvas[0], layout, {}, InsetContent::blank);
+  canvas[0].flush();
+  glFinish();
 }
 
 Screen::Screen(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -103,14 +144,25 @@ void Screen::State::draw_inset(const gles::PictureTexture& live) noexcept {
   glActiveTexture(GL_TEXTURE0);
 }
 
+void Screen::State::redraw(const ScreenState& state, const Painter& painter) noexcept {
+  if (drawn && drawn_version == state.paint_version && drawn_eye == state.eye) return;
+  constexpr std::uint64_t kRemembered = 16;
+  Eigen::AlignedBox3f changed;
+  const std::uint64_t now = painter.changes();
+  for (std::uint64_t i = std::max(drawn_changes, now > kRemembered ? now - kRemembered - 1 : 0) + 1; i <= now;
+       ++i) {
+    changed.extend(painter.touched_by(i));
+  }
+  view[0].draw(state.eye, painter.atlas_texture(), changed);
+  drawn = true;
+  drawn_version = state.paint_version;
+  drawn_changes = now;
+  drawn_eye = state.eye;
+}
+
 bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageDescriptor& target) noexcept {
   State& s = *state_;
-  if (!s.drawn || s.drawn_version != state.paint_version || !(s.drawn_eye == state.eye)) {
-    s.view[0].draw(state.eye, painter.atlas_texture());
-    s.drawn = true;
-    s.drawn_version = state.paint_version;
-    s.drawn_eye = state.eye;
-  }
+  s.redraw(state, painter);
   s.view[0].copy_to(s.framebuffer.id(), static_cast<int>(s.layout.view.x), static_cast<int>(s.layout.view.y));
   glBindFramebuffer(GL_FRAMEBUFFER, s.framebuffer.id());
   HudCanvas& canvas = s.canvas[0];
@@ -151,17 +203,16 @@ bool Screen::State::read_into(const ImageDescriptor& target) noexcept {
 Result<AtlasPicture> picture_of_surface(const Surface& surface, const AtlasLayout& layout,
                                         const Painter& painter, const Eye& eye,
                                         const ScreenSettings& settings) {
-  auto view = SurfaceView::create(
-      surface, layout,
-      {.width_px = settings.width_px, .height_px = settings.height_px, .seen_from = settings.seen_from});
+  constexpr int kFiner = 2;  // drawn larger and averaged, against jagged edges
+  const int width = settings.width_px * kFiner, height = settings.height_px * kFiner;
+  auto view = SurfaceView::create(surface, layout,
+                                  {.width_px = width, .height_px = height, .seen_from = settings.seen_from});
   if (!view) return tl::unexpected(view.error());
-  view->draw(eye, painter.atlas_texture());
-  AtlasPicture picture{.width_texels = settings.width_px, .height_texels = settings.height_px};
-  picture.rgba.resize(4 * static_cast<std::size_t>(settings.width_px) *
-                      static_cast<std::size_t>(settings.height_px));
+  view->draw(eye, painter.atlas_texture(), {});
+  std::vector<std::uint8_t> fine(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   glBindFramebuffer(GL_FRAMEBUFFER, view->framebuffer());
-  glReadPixels(0, 0, settings.width_px, settings.height_px, GL_RGBA, GL_UNSIGNED_BYTE, picture.rgba.data());
-  return picture;
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, fine.data());
+  return averaged(fine, settings, kFiner);
 }
 
 }  // namespace orcart
