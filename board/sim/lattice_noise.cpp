@@ -8,18 +8,22 @@
 namespace orcart {
 namespace {
 
-std::uint32_t hash_cell(const Eigen::Vector3i& cell, std::uint32_t seed) {
-  return hash32(static_cast<std::uint32_t>(cell.x()) * 0x8da6b343U +
-                static_cast<std::uint32_t>(cell.y()) * 0xd8163841U +
-                static_cast<std::uint32_t>(cell.z()) * 0xcb1ab31fU + seed * 0x9e3779b9U);
+constexpr std::uint32_t kStepX = 0x8da6b343U, kStepY = 0xd8163841U, kStepZ = 0xcb1ab31fU;
+
+/// Sums that name a cell: neighbours differ by the steps above, which spares most of the multiplications.
+std::uint32_t cell_sum(const Eigen::Vector3i& cell, std::uint32_t seed) {
+  return static_cast<std::uint32_t>(cell.x()) * kStepX + static_cast<std::uint32_t>(cell.y()) * kStepY +
+         static_cast<std::uint32_t>(cell.z()) * kStepZ + seed * 0x9e3779b9U;
 }
 
-/// One of the twelve edge directions of a cube, times the offset.
-float lean(std::uint32_t hash, const Eigen::Vector3f& offset) {
-  const std::uint32_t h = hash & 15U;
-  const float u = h < 8 ? offset.x() : offset.y();
-  const float v = h < 4 ? offset.y() : (h == 12 || h == 14 ? offset.x() : offset.z());
-  return ((h & 1U) != 0 ? -u : u) + ((h & 2U) != 0 ? -v : v);
+/// The twelve edge directions of a cube, four of them twice.
+constexpr std::int8_t kEdges[16][3] = {
+    {1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}, {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
+    {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1}, {1, 1, 0}, {0, -1, 1}, {-1, 1, 0}, {0, -1, -1}};
+
+float lean(std::uint32_t sum, float x, float y, float z) {
+  const auto& edge = kEdges[hash32(sum) & 15U];
+  return edge[0] * x + edge[1] * y + edge[2] * z;
 }
 
 float fade(float t) {
@@ -30,37 +34,35 @@ Eigen::Vector3i cell_of(const Eigen::Vector3f& point) {
   return point.array().floor().cast<int>();
 }
 
-Eigen::Vector3f site_in(const Eigen::Vector3i& cell, std::uint32_t seed) {
-  const std::uint32_t h = hash_cell(cell, seed), g = hash32(h ^ 0x68bc21ebU);
-  const Eigen::Vector3f jitter(static_cast<float>(h & 0xffffU), static_cast<float>(h >> 16),
-                               static_cast<float>(g & 0xffffU));
-  return cell.cast<float>() + jitter / 65536.0F;
-}
-
 struct Site {
   Eigen::Vector3f at;
-  Eigen::Vector3i cell;
+  std::uint32_t hash = 0;
 };
+
+Site site_in(const Eigen::Vector3i& cell, std::uint32_t seed) {
+  const std::uint32_t h = hash32(cell_sum(cell, seed)), g = hash32(h ^ 0x68bc21ebU);
+  const Eigen::Vector3f jitter(static_cast<float>(h & 0xffffU), static_cast<float>(h >> 16),
+                               static_cast<float>(g & 0xffffU));
+  return {.at = cell.cast<float>() + jitter / 65536.0F, .hash = h};
+}
 
 }  // namespace
 
 float gradient_noise(const Eigen::Vector3f& point, std::uint32_t seed) {
   const Eigen::Vector3i cell = cell_of(point);
   const Eigen::Vector3f f = point - cell.cast<float>();
-  const Eigen::Vector3f w(fade(f.x()), fade(f.y()), fade(f.z()));
-  float corner[2][2][2];
-  for (int x = 0; x < 2; ++x)
-    for (int y = 0; y < 2; ++y)
-      for (int z = 0; z < 2; ++z) {
-        const Eigen::Vector3i step(x, y, z);
-        corner[x][y][z] = lean(hash_cell(cell + step, seed), f - step.cast<float>());
-      }
-  float across[2];
-  for (int x = 0; x < 2; ++x) {
-    const float low = std::lerp(corner[x][0][0], corner[x][0][1], w.z());
-    across[x] = std::lerp(low, std::lerp(corner[x][1][0], corner[x][1][1], w.z()), w.y());
-  }
-  return std::lerp(across[0], across[1], w.x());
+  const std::uint32_t sum = cell_sum(cell, seed);
+  const float u = fade(f.x()), v = fade(f.y()), w = fade(f.z());
+  const auto along_z = [&](std::uint32_t at, float x, float y) {
+    const float low = lean(at, x, y, f.z()), high = lean(at + kStepZ, x, y, f.z() - 1);
+    return low + w * (high - low);
+  };
+  const auto along_y = [&](std::uint32_t at, float x) {
+    const float low = along_z(at, x, f.y()), high = along_z(at + kStepY, x, f.y() - 1);
+    return low + v * (high - low);
+  };
+  const float low = along_y(sum, f.x()), high = along_y(sum + kStepX, f.x() - 1);
+  return low + u * (high - low);
 }
 
 float fractal_noise(const Eigen::Vector3f& point, std::uint32_t seed, int octaves) {
@@ -73,26 +75,24 @@ float fractal_noise(const Eigen::Vector3f& point, std::uint32_t seed, int octave
 CellWall nearest_cell_wall(const Eigen::Vector3f& point, std::uint32_t seed) {
   const Eigen::Vector3i home = cell_of(point);
   std::array<Site, 27> sites;
+  std::array<float, 27> distances;
   std::size_t nearest = 0;
-  float best = 1e9F;
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const int n = static_cast<int>(i);
     const Eigen::Vector3i cell = home + Eigen::Vector3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-    sites[i] = {.at = site_in(cell, seed), .cell = cell};
-    const float distance = (sites[i].at - point).squaredNorm();
-    if (distance < best) {
-      best = distance;
-      nearest = i;
-    }
+    sites[i] = site_in(cell, seed);
+    distances[i] = (sites[i].at - point).norm();
+    if (distances[i] < distances[nearest]) nearest = i;
   }
   CellWall wall{.distance = 1e9F};
   for (std::size_t i = 0; i < sites.size(); ++i) {
-    if (i == nearest) continue;
+    // The bisector is at least half the difference of the distances away.
+    if (i == nearest || 0.5F * (distances[i] - distances[nearest]) >= wall.distance) continue;
     const Eigen::Vector3f across = sites[i].at - sites[nearest].at;
     const float distance = (0.5F * (sites[i].at + sites[nearest].at) - point).dot(across.normalized());
     if (distance >= wall.distance) continue;
     wall.distance = distance;
-    wall.name = hash_cell(sites[i].cell, seed) ^ hash_cell(sites[nearest].cell, seed);
+    wall.name = sites[i].hash ^ sites[nearest].hash;
   }
   return wall;
 }

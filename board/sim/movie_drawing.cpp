@@ -11,7 +11,8 @@
 namespace orcart {
 namespace {
 
-constexpr int kBlurSamples = 3;
+constexpr int kFewestBlurSamples = 3, kMostBlurSamples = 9;
+constexpr double kBlurStep_mm = 0.035;   ///< of the tip's way between two samples of one exposure
 constexpr double kGainEvery_s = 0.1;     ///< how often the automatic exposure looks
 constexpr double kGainSettles_s = 0.45;  ///< its time constant
 constexpr Nanos kProgressEvery = 200ms;
@@ -33,7 +34,12 @@ std::uint64_t content_of(const MovieRequest& request) {
   print.add(request.surface.mesh.vertices_mm.size()).add(request.surface.mesh.triangles.size());
   add_lens(print, request.scope);
   const SceneLook& look = request.look;
-  print.add(look.lighting).add(look.specular).add(look.noise).add(look.blur).add(look.tissue.index());
+  print.add(look.lighting)
+      .add(look.specular)
+      .add(look.noise)
+      .add(look.blur)
+      .add(look.tissue.index())
+      .add(look.texel_mm);
   if (const auto* living = std::get_if<LivingTissue>(&look.tissue)) print.add(living->seed).add(living->kind);
   if (const auto* code = std::get_if<CodedTissue>(&look.tissue))
     print.add(code->axis).add(code->period_mm).add(code->phase_rad);
@@ -72,7 +78,11 @@ class GainCurve {
 std::vector<Pose<M, C>> poses_during(const MovieRequest& request, std::uint64_t frame) {
   const bool blurred =
       request.look.blur == Effect::on && std::holds_alternative<LivingTissue>(request.look.tissue);
-  const int count = blurred ? kBlurSamples : 1;
+  const double way_mm = (pose_at(request, request.timing.end_of(frame)).translation_mm -
+                         pose_at(request, request.timing.start_of(frame)).translation_mm)
+                            .norm();
+  const int needed = 1 + static_cast<int>(way_mm / kBlurStep_mm);
+  const int count = blurred ? std::clamp(needed, kFewestBlurSamples, kMostBlurSamples) : 1;
   std::vector<Pose<M, C>> poses;
   for (int i = 0; i < count; ++i)  // at the middles of `count` equal parts
     poses.push_back(pose_at(

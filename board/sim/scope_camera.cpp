@@ -15,8 +15,7 @@ namespace {
 constexpr float kFar_mm = 200;
 constexpr float kLightReference_mm = 10;  ///< at this distance light of gain 1 is 1
 constexpr float kRimSoftness_px = 2.5F;   ///< the picture's own edge, centred on the mask's radius
-constexpr float kTexel_mm = 0.065F;
-constexpr int kCoarse = 97;  ///< fitting_gain looks at every 97th pixel
+constexpr int kCoarse = 97;               ///< fitting_gain looks at every 97th pixel
 constexpr float kMeanWanted = 0.20F, kBrightWanted = 0.75F, kHighestGain = 12;
 
 /// One pixel that can see something.
@@ -141,7 +140,7 @@ ScopeCamera::ScopeCamera(const TriangleMesh& mesh, const RayScene& rays, const S
     for (int x = 0; x < scope.width_px; ++x)
       if (const auto pixel = pixel_at(scope, x, y)) state_->pixels.push_back(*pixel);
   if (const auto* living = std::get_if<LivingTissue>(&look.tissue))
-    state_->baked = std::make_unique<BakedTissue>(mesh, *living, kTexel_mm);
+    state_->baked = std::make_unique<BakedTissue>(mesh, *living, look.texel_mm);
 }
 
 ScopeCamera::~ScopeCamera() = default;

@@ -23,6 +23,7 @@ struct SceneLook {
   Effect specular = Effect::on;  ///< wet highlights where the surface faces the light
   Effect noise = Effect::on;     ///< shot and read noise of the sensor
   Effect blur = Effect::on;      ///< motion during the exposure
+  float texel_mm = 0.065F;       ///< how finely living tissue is sampled on the surface; finer takes longer
 };
 
 /// Built before the run; draw() may run on any number of threads, each with a Scratch of its own. The

@@ -78,13 +78,13 @@ TissueSample tissue_sample(const Eigen::Vector3f& point_mm, const LivingTissue& 
   const float grain = fractal_noise(point_mm / 0.22F, seed + 151, 2);
   Eigen::Vector3f ground = recipe.pale + 0.75F * flush * (recipe.flushed - recipe.pale);
   ground *= 1 + 0.5F * mottle + 0.2F * grain;
-  ground.y() *= 1 - 0.22F * mottle;  // the darker speckles are the browner ones
+  ground.y() *= 1 - 0.08F * mottle;  // the darker speckles are the browner ones
   float blood = vessel_at(point_mm, recipe.capillaries, seed + 211);
   blood = std::max(blood, vessel_at(point_mm, recipe.branches, seed + 307));
   blood = std::max(blood, vessel_at(point_mm, recipe.trunks, seed + 401));
   // Beer-Lambert towards the vein's colour: thin layers tint, thick ones hide.
   const Eigen::Vector3f colour = ground.array().pow(1 - blood) * recipe.vein.array().pow(blood);
-  const float wet = 0.5F + 0.5F * fractal_noise(point_mm / 0.7F, seed + 503, 3) / 0.6F;
+  const float wet = 0.5F + 0.5F * fractal_noise(point_mm / 0.45F, seed + 503, 3) / 0.6F;
   return {.colour = colour.cwiseMax(0.0F).cwiseMin(1.0F), .gloss = std::clamp(wet, 0.0F, 1.0F)};
 }
 
