@@ -10,12 +10,13 @@ void EmulatorServer::step(Nanos longest) {
       device_.next_event() == Instant::max() ? longest : device_.next_event() - clock_.now();
   port_.wait(std::clamp(until_reply, Nanos{0}, longest));
   const Instant now = clock_.now();
+  watch_for_break(now);
   while (const std::size_t count = port_.read(buffer_)) {
     device_.receive(std::span{buffer_}.first(count), now);
     bytes_received_ += count;
+    baud_ = port_.baud();
     break_at_ = Instant::max();
   }
-  watch_for_break(now);
   while (const std::size_t count = device_.read(buffer_, now)) {
     port_.write(std::span{buffer_}.first(count));
     bytes_sent_ += count;

@@ -40,6 +40,7 @@ struct Arguments {
   double drift_ppm = 0;
   std::uint64_t seed = 1;
   double for_s = 0;
+  bool wire_time = false;
 };
 
 Result<std::unique_ptr<EmulatorPort>> open_port(const Arguments& arguments) {
@@ -69,7 +70,7 @@ Result<void> serve(const Arguments& arguments) {
   const auto device = std::make_unique<NdiEmulator>(
       NdiEmulatorSettings{.frame_rate_hz = arguments.rate_hz,
                           .clock_drift_ppm = arguments.drift_ppm,
-                          .has_line = arguments.pty,
+                          .has_line = arguments.wire_time,
                           .noise = {.sigma_mm = arguments.noise_mm, .seed = arguments.seed},
                           .on_at = start},
       motion);
@@ -117,6 +118,8 @@ void add_emulate(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   tracker->add_option("--seed", arguments->seed, "of the noise")->capture_default_str();
   tracker->add_option("--fault", arguments->faults, "KIND[:AMOUNT][@FROM[-UNTIL]][/EVERY]");
+  tracker->add_flag("--wire-time", arguments->wire_time,
+                    "bytes take as long as on a line at the device's baud rate");
   tracker->add_option("--for", arguments->for_s, "seconds; until interrupted by default")
       ->check(CLI::PositiveNumber);
   tracker->callback([arguments, &exit_code] {

@@ -1,0 +1,119 @@
+// The Linux links against the emulated tracker behind a real pseudo-terminal and a real TCP port.
+#include <atomic>
+#include <thread>
+
+#include "board/linux/tcp_link.hpp"
+#include "board/linux/tty_link.hpp"
+#include "firmware-host/tracker/ndi_driver.hpp"
+#include "tests/board/ports/byte_link_contract.hpp"
+#include "tests/firmware-host/tracker/tracker_rig.hpp"
+#include "tools/emulate/emulator_server.hpp"
+
+namespace orcart::testing {
+
+/// The emulated tracker served by a thread of its own, which ends with the object.
+class ServedTracker {
+ public:
+  explicit ServedTracker(std::unique_ptr<EmulatorPort> port)
+      : name(port->name()), port_(std::move(port)), thread_([this] { serve(); }) {}
+  ~ServedTracker() {
+    stop_.store(true, std::memory_order_relaxed);
+    thread_.join();
+  }
+  const std::string name;
+
+ private:
+  void serve() {
+    EmulatorServer server(device_, *port_);
+    while (!stop_.load(std::memory_order_relaxed)) server.step(2ms);
+  }
+
+  CirclingTools motion_;
+  NdiEmulator device_{{.has_line = false, .on_at = RealClock{}.now()}, motion_};
+  std::unique_ptr<EmulatorPort> port_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+class TtyRig final : public ByteLinkRig {
+ public:
+  TtyRig()
+      : served_(std::make_unique<ServedTracker>(open_pseudo_terminal().value())),
+        link_(TtyLink::open(served_->name)) {}
+  Clock& clock() override { return clock_; }
+  ByteLink& link() override { return **link_; }
+  void cut() override { served_.reset(); }
+  bool mend() override { return false; }
+
+ private:
+  RealClock clock_;
+  std::unique_ptr<ServedTracker> served_;
+  Result<std::unique_ptr<TtyLink>> link_;
+};
+
+class TcpRig final : public ByteLinkRig {
+ public:
+  TcpRig() : served_(std::make_unique<ServedTracker>(open_tcp_port({.port = 0}).value())) {
+    port_ = static_cast<std::uint16_t>(std::stoi(served_->name.substr(served_->name.find(':') + 1)));
+    link_ = TcpLink::open({.host = "127.0.0.1", .port = port_}).value();
+  }
+  Clock& clock() override { return clock_; }
+  ByteLink& link() override { return *link_; }
+  void cut() override { served_.reset(); }
+  bool mend() override {
+    auto port = open_tcp_port({.port = port_});
+    if (port) served_ = std::make_unique<ServedTracker>(std::move(*port));
+    return port.has_value();
+  }
+
+ private:
+  RealClock clock_;
+  std::unique_ptr<ServedTracker> served_;
+  std::uint16_t port_ = 0;
+  std::unique_ptr<TcpLink> link_;
+};
+
+INSTANTIATE_TYPED_TEST_SUITE_P(PseudoTerminal, ByteLinkContract, TtyRig);
+INSTANTIATE_TYPED_TEST_SUITE_P(Tcp, ByteLinkContract, TcpRig);
+
+namespace {
+
+/// Runs the driver on the wall clock until it has reported 20 device frames, at most for five seconds.
+int frames_over(ByteLink& link, std::uint32_t baud) {
+  RealClock clock;
+  NdiDriver driver(two_tools(baud), link);
+  const Instant end = clock.now() + 5s;
+  int frames = 0;
+  while (frames < 20 && clock.now() < end) {
+    link.wait(std::min(end, driver.next_due()));
+    frames += driver.step(clock.now()).new_reply ? 1 : 0;
+  }
+  return frames;
+}
+
+TEST(RealLinks, CarryTheDriverOverAPseudoTerminal) {
+  TtyRig rig;
+  EXPECT_EQ(frames_over(rig.link(), 921600), 20);
+}
+
+TEST(RealLinks, CarryTheDriverOverTcp) {
+  TcpRig rig;
+  EXPECT_EQ(frames_over(rig.link(), 0), 20);
+}
+
+TEST(RealLinks, SayInASentenceWhyTheyCannotBeOpened) {
+  const auto absent = TtyLink::open("/dev/no-such-tracker");
+  ASSERT_FALSE(absent);
+  EXPECT_EQ(absent.error().message,
+            "tracker device /dev/no-such-tracker cannot be opened: disconnected; plug the tracker in, or "
+            "name another "
+            "device");
+  EXPECT_NE(TtyLink::open("/dev/null").error().message.find("a serial device such as /dev/ttyUSB0"),
+            std::string::npos);
+  const auto refused = TcpLink::open({.host = "127.0.0.1", .port = 1}, 100ms);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("does not answer"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace orcart::testing
