@@ -9,8 +9,8 @@
 namespace orcart {
 
 struct CapturedFrame {
-  std::uint32_t buffer = 0;      ///< the loan: goes home by the return lane, exactly once
-  std::uint32_t sequence = 0;    ///< the driver's count
+  std::uint32_t buffer = 0;    ///< the loan: goes home by the return lane, exactly once
+  std::uint32_t sequence = 0;  ///< the driver's count
   ImageDescriptor image;
   Instant exposure_start{};
   Instant exposure_end{};
@@ -21,9 +21,9 @@ struct CapturedFrame {
 
 /// The pedal asked for a picture: the first good frame whose mid-exposure is not before `edge_at`.
 struct CaptureRequest {
-  std::uint32_t unit = 0;   ///< undo unit; a stream of pictures shares one
-  Instant edge_at{};        ///< the kernel's stamp of the pedal edge
-  bool streaming = false;   ///< one of a stream: every frame until the release
+  std::uint32_t unit = 0;  ///< undo unit; a stream of pictures shares one
+  Instant edge_at{};       ///< the kernel's stamp of the pedal edge
+  bool streaming = false;  ///< one of a stream: every frame until the release
 };
 
 }  // namespace orcart

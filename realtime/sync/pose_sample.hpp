@@ -12,14 +12,14 @@ enum class ToolState : std::uint8_t { unseen, seen, disabled, doubtful };
 
 /// Both tools from ONE device frame. The poses mean something only where their state is `seen`.
 struct PoseSample {
-  Instant measured_at{};          ///< host time of the device frame, by ClockFit, device latency already taken off
-  Instant arrived_at{};           ///< host time at which the reply was complete
+  Instant measured_at{};  ///< host time of the device frame, by ClockFit, device latency already taken off
+  Instant arrived_at{};   ///< host time at which the reply was complete
   std::uint32_t device_frame = 0;
   ToolState scope = ToolState::unseen;
   ToolState reference = ToolState::unseen;
   Pose<T, S> X_TS;
   Pose<T, R> X_TR;
-  float scope_error_mm = 0;       ///< the device's own RMS of the marker fit
+  float scope_error_mm = 0;  ///< the device's own RMS of the marker fit
   float reference_error_mm = 0;
 
   bool complete() const { return scope == ToolState::seen && reference == ToolState::seen; }
