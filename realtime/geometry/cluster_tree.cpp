@@ -36,7 +36,7 @@ std::size_t ClusterTree::bytes() const noexcept {
 
 void ConeWalk::begin(const ClusterTree& tree) noexcept {
   size_ = 0;
-  if (!tree.nodes().empty()) stack_[size_++] = 0;
+  if (!tree.nodes().empty()) stack_[size_++] = {};
 }
 
 void ConeWalk::push_children(const ClusterTree::Node& node, const ViewingCone& cone, bool inside) noexcept {
@@ -51,17 +51,21 @@ void ConeWalk::push_children(const ClusterTree::Node& node, const ViewingCone& c
     along[i] = z;
     side[i] = std::sqrt(rho2 > 0 ? rho2 : 0.F) * cone.cosine - z * cone.sine;
   }
+  const std::size_t first = size_;
   for (std::size_t i = 0; i < ClusterTree::kWidth; ++i) {
     const float r = node.radius[i];
     if (!(side[i] <= r && along[i] - r <= cone.far_mm && along[i] + r >= 0)) continue;
     const bool child_inside = inside || (side[i] < -r && along[i] + r < cone.far_mm);
-    stack_[size_++] = node.child[i] | (child_inside ? kInside : 0);
+    const Entry entry{.depth_mm = along[i], .child = node.child[i] | (child_inside ? kInside : 0)};
+    std::size_t at = size_++;
+    for (; at > first && stack_[at - 1].depth_mm < entry.depth_mm; --at) stack_[at] = stack_[at - 1];
+    stack_[at] = entry;
   }
 }
 
 bool ConeWalk::next(const ClusterTree& tree, const ViewingCone& cone, ClusterVisit& visit) noexcept {
   while (size_ > 0) {
-    const std::uint32_t entry = stack_[--size_];
+    const std::uint32_t entry = stack_[--size_].child;
     const std::uint32_t index = entry & ~(ClusterTree::kLeaf | kInside);
     const bool inside = (entry & kInside) != 0;
     if ((entry & ClusterTree::kLeaf) != 0) {

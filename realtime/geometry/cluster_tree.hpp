@@ -71,6 +71,7 @@ struct ClusterVisit {
 
 /// A walk through the tree that stops at each cluster and can be taken up later. Real-time: allocates
 /// nothing, visits each node at most once, keeps its stack in itself.
+/// Of a node's children the nearest comes first: what hides tends to come before what it hides.
 class ConeWalk {
  public:
   void begin(const ClusterTree& tree) noexcept;
@@ -80,7 +81,11 @@ class ConeWalk {
  private:
   void push_children(const ClusterTree::Node& node, const ViewingCone& cone, bool inside) noexcept;
 
-  std::array<std::uint32_t, ClusterTree::kMaxStack> stack_{};
+  struct Entry {
+    float depth_mm = 0;
+    std::uint32_t child = 0;
+  };
+  std::array<Entry, ClusterTree::kMaxStack> stack_{};
   std::size_t size_ = 0;
 };
 

@@ -176,6 +176,19 @@ TEST(Mapper, CarriesWhatExceedsItsCapsAndLosesNothing) {
   }
 }
 
+TEST(Mapper, HandsOutWhatHidesBeforeWhatIsHidden) {
+  const TriangleMesh near = testing::plane_grid(6, 40, 10), far = testing::plane_grid(12, 40, 20);
+  const MapperLimits limits{.max_triangles_per_step = 400};
+  Mapper mapper = mapper_over(testing::joined(near, far), SeenFrom::outside, limits);
+  CutoutPatch patch(patch_capacity(limits));
+  mapper.begin(looking({0, 0, 0}, {0, 0, 1}), TextureMode::perspective);
+  ASSERT_TRUE(mapper.next(patch));
+  EXPECT_FALSE(patch.last_part);
+  EXPECT_GT(patch.triangles.size(), 300U);
+  for (const std::uint32_t t : patch.triangles) EXPECT_LT(t, near.triangles.size());
+  EXPECT_TRUE(patch.occluders.empty());
+}
+
 TEST(Mapper, ForgetsACarriedViewWhenANewOneBegins) {
   const MapperLimits limits{.max_triangles_per_step = 100};
   const TriangleMesh sphere = testing::icosphere(20, 4);
