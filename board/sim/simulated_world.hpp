@@ -35,6 +35,8 @@ class SimulatedWorld final : public ToolMotion {
   Pose<T, R> X_TR(Instant at) const noexcept;
   /// The registration that is true; a cart's own may differ.
   const Pose<M, R>& X_MR() const noexcept { return X_MR_; }
+  /// Puts the reference somewhere else on the patient; before any thread asks.
+  void put_reference(const Pose<M, R>& X_MR) noexcept { X_MR_ = X_MR; }
 
   /// All edges of the pedal, at their instants, in order.
   std::vector<PedalEdge> pedal_edges() const;

@@ -280,13 +280,13 @@ void Cart::stop() noexcept {
 
 void Cart::run_simulated(SimulatedClock& clock, Instant end) {
   State& s = *state_;
-  s.build_stages();
-  (void)s.setup.ports.camera.start();
-  s.runner = std::make_unique<SimulatedRunner>(s.plans(), clock);
-  s.thread_ledgers.clear();
-  for (std::size_t i = 0; i < s.plans().size(); ++i) s.thread_ledgers.push_back(&s.runner->ledger(i));
+  if (!s.runner) {
+    s.build_stages();
+    (void)s.setup.ports.camera.start();
+    s.runner = std::make_unique<SimulatedRunner>(s.plans(), clock);
+    for (std::size_t i = 0; i < kThreadCount - 1; ++i) s.thread_ledgers.push_back(&s.runner->ledger(i));
+  }
   s.runner->run_until(end);
-  s.setup.ports.camera.stop();
 }
 
 const Ledger<FrameRecord>& Cart::frames() const {

@@ -73,6 +73,7 @@ class Cart {
   Painter& painter();  ///< after stop(), or before start()
   /// For a progress line. Any thread.
   struct Now {
+    double coverage = 0;
     std::size_t frames = 0, captures = 0;  ///< shown; painted or refused
   };
   Now now() const;

@@ -136,7 +136,8 @@ void PanelStage::fill_status(Instant now) noexcept {
   if (paint.version != screen_state_.paint_version || now >= coverage_due_) {
     screen_state_.paint_version = paint.version;
     if (now >= coverage_due_) {
-      status.coverage = static_cast<float>(parts_.painter.coverage());
+      coverage_.store(parts_.painter.coverage(), std::memory_order_relaxed);
+      status.coverage = static_cast<float>(coverage());
       coverage_due_ = now + 500ms;
     }
   }

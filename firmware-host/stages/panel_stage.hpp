@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 
 #include "board/ports/panel.hpp"
@@ -45,6 +46,8 @@ class PanelStage final : public Stage {
 
   const Status& status() const noexcept { return screen_state_.status; }
   std::uint64_t presented() const noexcept { return presented_; }
+  /// The newest share of the surface that carries paint. Any thread.
+  double coverage() const noexcept { return coverage_.load(std::memory_order_relaxed); }  // a figure alone
   /// A person turned the view; takes effect with the next picture. Same thread as step().
   void look_from(const Eye& eye) noexcept { screen_state_.eye = eye; }
 
@@ -76,6 +79,7 @@ class PanelStage final : public Stage {
   Instant acknowledged_scan_out_{};
   std::uint64_t presented_ = 0;
   Instant coverage_due_{};
+  std::atomic<double> coverage_{0};
 };
 
 }  // namespace orcart

@@ -1,0 +1,221 @@
+// Read, arm, run, stop, judge, report: in this order, with a progress line all the while.
+#include "firmware-host/app/run.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+
+#include "firmware-host/app/cart.hpp"
+#include "firmware-host/app/run_figures.hpp"
+#include "firmware-host/app/simulated_devices.hpp"
+#include "firmware-host/app/truth_check.hpp"
+#include "firmware-host/report/contact_sheet.hpp"
+#include "render/views/screen.hpp"
+
+namespace orcart {
+namespace {
+
+volatile std::sig_atomic_t stop_asked = 0;
+void ask_to_stop(int) {
+  stop_asked = 1;
+}
+
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = ask_to_stop;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+ExitCode complain(const Error& error, ExitCode code) {
+  std::fprintf(stderr, "orcartd: %s\n", error.message.c_str());
+  return code;
+}
+
+/// One line that is written over while it goes on, where a person looks; now and then a line elsewhere.
+class Progress {
+ public:
+  void show(const char* what, double done) {
+    const int percent = static_cast<int>(done * 100);
+    if (percent == last_ && what == what_) return;
+    if (isatty(STDERR_FILENO) == 0 && percent / 10 == last_ / 10 && what == what_) return;
+    std::fprintf(stderr, isatty(STDERR_FILENO) != 0 ? "\r%s %3d %%   " : "%s %d %%\n", what, percent);
+    last_ = percent;
+    what_ = what;
+  }
+  void end() {
+    if (last_ >= 0 && isatty(STDERR_FILENO) != 0) std::fputc('\n', stderr);
+    last_ = -1;
+    what_ = nullptr;
+  }
+
+ private:
+  int last_ = -1;
+  const char* what_ = nullptr;
+};
+
+/// Lets the cart go through the procedure; its coverage as it grew.
+Result<std::vector<CoveragePoint>> go(Cart& cart, const SimulatedDevices& devices, Clock& clock,
+                                      SimulatedClock* simulated, Progress& progress) {
+  std::vector<CoveragePoint> coverage;
+  if (simulated == nullptr) {
+    if (auto started = cart.start(); !started) return tl::unexpected(started.error());
+  }
+  const Instant end = devices.end() + 500ms;
+  while (clock.now() < end && stop_asked == 0) {
+    const Instant next = std::min(end, clock.now() + 250ms);
+    if (simulated != nullptr) {
+      cart.run_simulated(*simulated, next);
+    } else {
+      clock.sleep_until(next);
+    }
+    const double at_s = seconds(clock.now() - devices.start());
+    if (at_s >= 0) coverage.push_back({.at_s = at_s, .covered = cart.now().coverage});
+    progress.show("procedure", std::max(0.0, at_s / seconds(end - devices.start())));
+  }
+  progress.end();
+  return coverage;
+}
+
+std::vector<JudgedView> views_of(const Cart& cart, const SimulatedWorld& world, std::size_t most) {
+  std::vector<JudgedView> views;
+  for (std::size_t i = 0; i < cart.captures().size() && views.size() < most; ++i) {
+    const CaptureRecord& c = cart.captures().at(i);
+    if (c.refusal == Refusal::none && !c.streaming)
+      views.push_back({.believed = c.X_MC, .true_pose = world.X_MC(c.mid_exposure)});
+  }
+  return views;
+}
+
+Result<void> judge_painting(RunReport& report, const Patient& patient, const CartConfig& config,
+                            std::vector<JudgedView> views, Progress& progress) {
+  struct Case {
+    std::string name;
+    TextureMode mode;
+    bool exact;
+  };
+  char noise[96];
+  std::snprintf(noise, sizeof noise, "as run: %s, %.2f mm on each marker",
+                config.mode == TextureMode::paper ? "paper" : "perspective",
+                config.simulation.marker_noise_mm);
+  const std::array<Case, 3> cases{{{noise, config.mode, false},
+                                   {"perspective, exact poses", TextureMode::perspective, true},
+                                   {"paper mode, exact poses", TextureMode::paper, true}}};
+  for (const Case& one : cases) {
+    std::vector<JudgedView> judged = views;
+    if (one.exact) {
+      for (JudgedView& view : judged) view.believed = view.true_pose;
+    }
+    auto error = check_painting(
+        patient, judged,
+        {.name = one.name, .seen_from = config.seen_from, .mode = one.mode, .format = config.camera.format},
+        [&](double done) { progress.show("painting error", done); });
+    if (!error) return tl::unexpected(error.error());
+    report.errors.push_back(std::move(*error));
+  }
+  progress.end();
+  return {};
+}
+
+Result<Picture> surface_picture(const Patient& patient, const Painter& painter, const CartConfig& config,
+                                const Eigen::Vector3d& from) {
+  const Eigen::Vector3d up(config.view_up[0], config.view_up[1], config.view_up[2]);
+  auto drawn =
+      picture_of_surface(patient.surface, patient.layout, painter, eye_on(patient.surface.mesh, from, up),
+                         {.width_px = 1000, .height_px = 800, .seen_from = config.seen_from});
+  if (!drawn) return tl::unexpected(drawn.error());
+  Picture picture;
+  picture.width_px = drawn->width_texels;
+  picture.height_px = drawn->height_texels;
+  picture.rgba = std::move(drawn->rgba);
+  return picture;
+}
+
+Result<void> write_pictures(RunReport& report, const Options& options, Cart& cart, const Patient& patient,
+                            const CartConfig& config, const SimulatedDevices& devices) {
+  std::error_code error;
+  std::filesystem::create_directories(options.report_dir, error);
+  std::vector<Picture> all = devices.pictures().kept();
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < all.size(); ++i) names.push_back("panel-" + std::to_string(i + 1) + ".png");
+  const Eigen::Vector3d from(config.view_from[0], config.view_from[1], config.view_from[2]);
+  for (const auto& [name, direction] :
+       {std::pair{"surface-front.png", from}, std::pair{"surface-back.png", Eigen::Vector3d(-from)}}) {
+    auto picture = surface_picture(patient, cart.painter(), config, direction);
+    if (!picture) return tl::unexpected(picture.error());
+    all.push_back(std::move(*picture));
+    names.push_back(name);
+  }
+  const Picture sheet = contact_sheet(all, {.columns = 3, .thumb_width_px = 640});
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (auto written =
+            write_png(options.report_dir / names[i], all[i].width_px, all[i].height_px, all[i].rgba);
+        !written)
+      return written;
+  }
+  if (auto written =
+          write_png(options.report_dir / "contact-sheet.png", sheet.width_px, sheet.height_px, sheet.rgba);
+      !written)
+    return written;
+  report.pictures = {"contact-sheet.png"};
+  if (all.size() > 2)
+    report.pictures.insert(report.pictures.end(),
+                           {names[all.size() - 3], names[all.size() - 2], names[all.size() - 1]});
+  return {};
+}
+
+}  // namespace
+
+ExitCode run(const Options& options) {
+  catch_signals();
+  auto config = read_cart(options.cart);
+  if (!config) return complain(config.error(), ExitCode::configuration);
+  if (options.run_for) config->simulation.duration_s = seconds(*options.run_for);
+  auto patient = read_patient(*config);
+  if (!patient) return complain(patient.error(), ExitCode::configuration);
+  for (const std::string& note : patient->notes) std::fprintf(stderr, "%s\n", note.c_str());
+
+  RealClock real;
+  SimulatedClock simulated;
+  const bool simulate = options.clock == ClockKind::simulated;
+  Clock& clock = simulate ? static_cast<Clock&>(simulated) : real;
+  Progress progress;
+  auto devices = SimulatedDevices::create(
+      {.config = *config, .patient = *patient, .clock = clock, .drawing = [&](double done) {
+         progress.show("drawing what the camera will see", done);
+       }});
+  progress.end();
+  if (!devices) return complain(devices.error(), ExitCode::device);
+  auto cart = Cart::create({.config = *config,
+                            .patient = *patient,
+                            .ports = (*devices)->ports(),
+                            .clock = clock,
+                            .longest_run_s = config->simulation.duration_s + 10});
+  if (!cart) return complain(cart.error(), ExitCode::device);
+  auto coverage = go(**cart, **devices, clock, simulate ? &simulated : nullptr, progress);
+  if (!coverage) return complain(coverage.error(), ExitCode::device);
+  const double memory_mb = resident_mb();
+  (*cart)->stop();
+  RunReport report = figures_of(**cart, {.config = *config,
+                                         .patient = *patient,
+                                         .started = (*devices)->start(),
+                                         .ended = clock.now(),
+                                         .resident_mb = memory_mb,
+                                         .coverage = std::move(*coverage)});
+  if (!options.report_dir.empty()) {
+    if (auto written = write_pictures(report, options, **cart, *patient, *config, **devices); !written)
+      return complain(written.error(), ExitCode::failed);
+    constexpr std::size_t kViewsJudged = 8;
+    const auto views = views_of(**cart, (*devices)->world(), kViewsJudged);
+    cart->reset();
+    if (auto judged = judge_painting(report, *patient, *config, views, progress); !judged)
+      return complain(judged.error(), ExitCode::failed);
+    if (auto written = write_report(options.report_dir, report); !written)
+      return complain(written.error(), ExitCode::failed);
+  }
+  std::fputs(summary_of(report, options.report_dir).c_str(), stdout);
+  return ExitCode::ok;
+}
+
+}  // namespace orcart

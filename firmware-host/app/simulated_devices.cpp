@@ -1,0 +1,130 @@
+// The world first, then its pictures, then the devices that measure it.
+#include "firmware-host/app/simulated_devices.hpp"
+
+#include "board/sim/movie_drawing.hpp"
+#include "board/sim/ndi/simulated_byte_link.hpp"
+#include "board/sim/simulated_frame_source.hpp"
+#include "board/sim/simulated_gpio.hpp"
+#include "board/sim/simulated_panel.hpp"
+
+namespace orcart {
+namespace {
+
+constexpr Nanos kTrackerStart = 3s;  // probe, baud change, upload of two tools: under this at any baud
+constexpr Nanos kDeviceLatencyFloor = 1ms;
+
+std::vector<Instant> picture_instants(Instant start, Instant end, std::size_t count) {
+  std::vector<Instant> instants;
+  for (std::size_t i = 1; i <= count; ++i) {
+    instants.push_back(
+        start + (end - start) * static_cast<std::int64_t>(i) / static_cast<std::int64_t>(count) - 400ms);
+  }
+  return instants;
+}
+
+NdiEmulatorSettings emulator_settings(const CartConfig& config, Instant now) {
+  NdiEmulatorSettings settings;
+  settings.frame_rate_hz = config.tracker.rate_hz;
+  settings.device_latency =
+      std::max<Nanos>(kDeviceLatencyFloor, from_seconds(config.tracker.latency_ms * 1e-3));
+  settings.noise = {.sigma_mm = config.simulation.marker_noise_mm, .seed = config.simulation.seed};
+  settings.on_at = now;
+  return settings;
+}
+
+}  // namespace
+
+struct SimulatedDevices::State {
+  SimulatedWorld world;
+  MovieFile movie;
+  NdiEmulator emulator;
+  SimulatedByteLink link;
+  SimulatedFrameSource camera;
+  SimulatedGpio pedal;
+  PanelPictures pictures;
+  std::array<PanelObserver*, 1> observers;
+  SimulatedPanel panel;
+
+  State(SimulatedWorld made_world, MovieFile made_movie, const Request& request)
+      : world(std::move(made_world)),
+        movie(std::move(made_movie)),
+        emulator(emulator_settings(request.config, request.clock.now()), world),
+        link(emulator, request.clock),
+        camera(request.clock, movie,
+               {.start = world.start(),
+                .stamp_at = request.config.camera.stamp == StampMeaning::start_of_exposure
+                                ? StampAt::exposure_start
+                                : StampAt::exposure_end,
+                .buffers = kFrameBuffers}),
+        pedal(request.clock, {.edges = world.pedal_edges(), .bounce = {.pairs = 2}}),
+        pictures(mode_of(request.config), picture_instants(world.start(), world.end(), request.pictures)),
+        observers{&pictures},
+        panel(request.clock, {.mode = mode_of(request.config), .first_vblank = request.clock.now() + 7ms},
+              observers) {}
+
+  static PanelMode mode_of(const CartConfig& config) {
+    return {.width_px = config.panel.width_px,
+            .height_px = config.panel.height_px,
+            .refresh_hz = config.panel.refresh_hz};
+  }
+};
+
+Result<std::unique_ptr<SimulatedDevices>> SimulatedDevices::create(const Request& request) {
+  const CartConfig& config = request.config;
+  const SimulationConfig& simulation = config.simulation;
+  auto rays = RayScene::create(request.patient.surface.mesh);
+  if (!rays) return tl::unexpected(rays.error());
+  ProcedureScript script{
+      .seed = simulation.seed, .duration_s = simulation.duration_s, .seen_from = config.seen_from};
+  script.entry_direction = {simulation.entry_direction[0], simulation.entry_direction[1],
+                            simulation.entry_direction[2]};
+  auto world = SimulatedWorld::create(
+      {.surface = request.patient.surface, .rays = *rays, .scope = request.patient.scope, .script = script});
+  if (!world) return tl::unexpected(world.error());
+
+  const Effect effects = simulation.picture_noise ? Effect::on : Effect::off;
+  SceneLook look{.specular = effects, .noise = effects, .blur = effects};
+  if (config.seen_from == SeenFrom::outside) look.tissue = LivingTissue{.kind = TissueKind::cortex};
+  const MovieRequest wanted{.surface = request.patient.surface,
+                            .rays = *rays,
+                            .scope = request.patient.scope,
+                            .world = *world,
+                            .look = look,
+                            .format = config.camera.format,
+                            .timing = {.rate_hz = config.camera.rate_hz,
+                                       .exposure = from_seconds(config.camera.exposure_ms * 1e-3)}};
+  std::error_code error;
+  std::filesystem::create_directories(simulation.movie, error);
+  char name[64];
+  std::snprintf(name, sizeof name, "%016llx.orcmovie",
+                static_cast<unsigned long long>(header_for(wanted).content));
+  auto movie = movie_for(simulation.movie / name, wanted, [&](std::uint64_t drawn, std::uint64_t all) {
+    if (request.drawing) request.drawing(static_cast<double>(drawn) / static_cast<double>(all));
+  });
+  if (!movie) return tl::unexpected(movie.error());
+  world->put_reference(request.patient.registration.X_MR);
+  world->begin_at(request.clock.now() + kTrackerStart);
+  return std::unique_ptr<SimulatedDevices>(
+      new SimulatedDevices(std::make_unique<State>(std::move(*world), std::move(*movie), request)));
+}
+
+SimulatedDevices::SimulatedDevices(std::unique_ptr<State> state) : state_(std::move(state)) {}
+SimulatedDevices::~SimulatedDevices() = default;
+
+Ports SimulatedDevices::ports() {
+  return {.tracker = state_->link, .camera = state_->camera, .pedal = state_->pedal, .panel = state_->panel};
+}
+Instant SimulatedDevices::start() const {
+  return state_->world.start();
+}
+Instant SimulatedDevices::end() const {
+  return state_->world.end();
+}
+const SimulatedWorld& SimulatedDevices::world() const {
+  return state_->world;
+}
+const PanelPictures& SimulatedDevices::pictures() const {
+  return state_->pictures;
+}
+
+}  // namespace orcart

@@ -1,0 +1,41 @@
+// The simulated cart's four devices and the world they measure, made from the configuration.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "board/sim/movie_file.hpp"
+#include "board/sim/simulated_world.hpp"
+#include "firmware-host/app/cart.hpp"
+#include "firmware-host/app/panel_pictures.hpp"
+
+namespace orcart {
+
+/// Everything outlives the cart that borrows ports().
+class SimulatedDevices {
+ public:
+  struct Request {
+    const CartConfig& config;
+    const Patient& patient;
+    Clock& clock;
+    std::size_t pictures = 6;                  ///< panel pictures to keep, spread over the procedure
+    std::function<void(double done)> drawing;  ///< progress of drawing what the camera will see
+  };
+  /// Plans the procedure, and draws its pictures into a movie file unless they lie there already.
+  static Result<std::unique_ptr<SimulatedDevices>> create(const Request& request);
+  ~SimulatedDevices();
+
+  Ports ports();
+  /// When the procedure starts: a while after creation, so that the tracker is up by then.
+  Instant start() const;
+  Instant end() const;
+  const SimulatedWorld& world() const;
+  const PanelPictures& pictures() const;
+
+ private:
+  struct State;
+  explicit SimulatedDevices(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace orcart
