@@ -17,7 +17,7 @@ std::optional<std::vector<ChartRect>> pack(const std::vector<Chart>& charts, int
   std::vector<std::uint32_t> order(charts.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto extent = [&](std::uint32_t c, int axis) {
-    return static_cast<int>(std::ceil(charts[c].size_texels[axis])) + 1 + 2 * gutter;
+    return static_cast<int>(std::ceil(charts[c].size_texels[axis])) + 2 * gutter;
   };
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return extent(a, 1) != extent(b, 1) ? extent(a, 1) > extent(b, 1) : extent(a, 0) > extent(b, 0);
@@ -42,8 +42,7 @@ std::optional<std::vector<ChartRect>> pack(const std::vector<Chart>& charts, int
 
 void place(const Chart& chart, std::uint32_t number, int gutter, AtlasLayout& layout) {
   const ChartRect& rect = layout.charts[number];
-  const Eigen::Vector2f shift(static_cast<float>(rect.x + gutter) + 0.5f,
-                              static_cast<float>(rect.y + gutter) + 0.5f);
+  const Eigen::Vector2f shift(static_cast<float>(rect.x + gutter), static_cast<float>(rect.y + gutter));
   for (std::size_t i = 0; i < chart.triangles.size(); ++i) {
     layout.chart_of_triangle[chart.triangles[i]] = number;
     auto& corners = layout.corners_texels[chart.triangles[i]];

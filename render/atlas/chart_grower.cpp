@@ -75,7 +75,7 @@ class Grower {
     if (((high - low).array() > kChartSizeTexels - 4).any()) return false;
     bool free = true;
     visit(t,
-          [&](std::size_t cell, float inside) { free = free && (grid_[cell] != chart_ || inside < 1e-3f); });
+          [&](std::size_t cell, float inside) { free = free && (grid_[cell] != chart_ || inside < 1e-4f); });
     return free;
   }
 
@@ -114,9 +114,11 @@ class Grower {
         if (fits(corners)) take(n, corners, chart);
       }
     }
+    const Eigen::Vector2f first_texel =
+        low_.array().floor();  // whole texels: what overlapped on the grid does so there
     for (auto& corners : chart.corners_texels)
-      for (auto& p : corners) p -= low_;
-    chart.size_texels = high_ - low_;
+      for (auto& p : corners) p -= first_texel;
+    chart.size_texels = high_ - first_texel;
     return chart;
   }
 

@@ -11,8 +11,8 @@
 
 namespace orcart {
 
-/// A patch projected along its own normal. Corner positions are in texels, with the chart's bounding box at
-/// (0,0).
+/// A patch projected along its own normal. Corner positions are in texels, the lowest one within
+/// texel (0,0).
 struct Chart {
   std::vector<std::uint32_t> triangles;
   std::vector<std::array<Eigen::Vector2f, 3>> corners_texels;

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "realtime/base/image.hpp"
 #include "realtime/geometry/triangle_mesh.hpp"
 #include "realtime/mapper/cutout_patch.hpp"
 #include "realtime/optics/scope_model.hpp"
