@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 
@@ -12,6 +13,10 @@ namespace {
 glm::vec3 to_glm(const Eigen::Vector3d& v) {
   return {float(v.x()), float(v.y()), float(v.z())};
 }
+
+constexpr double kMargin = 1.08;           // clear space around the surface
+constexpr double kNarrowestAspect = 1.15;  // of the views that the surface must fit into
+
 }  // namespace
 
 Eye eye_on(const TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen::Vector3d& up) {
@@ -22,11 +27,18 @@ Eye eye_on(const TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen::V
   }
   Eye eye;
   eye.target_mm = (0.5f * (low + high)).cast<double>();
-  double radius_mm = 0;
-  for (const auto& v : mesh.vertices_mm)
-    radius_mm = std::max(radius_mm, (v.cast<double>() - eye.target_mm).norm());
   eye.up = up;
-  eye.position_mm = eye.target_mm + from.normalized() * radius_mm / std::sin(eye.field_of_view_rad / 2);
+  const Eigen::Vector3d towards = from.normalized(), side = up.cross(towards).normalized(),
+                        top = towards.cross(side);
+  const double half_height = std::tan(eye.field_of_view_rad / 2) / kMargin,
+               half_width = half_height * kNarrowestAspect;
+  double distance_mm = 0;
+  for (const auto& v : mesh.vertices_mm) {
+    const Eigen::Vector3d p = v.cast<double>() - eye.target_mm;
+    const double reach = std::max(std::abs(p.dot(top)) / half_height, std::abs(p.dot(side)) / half_width);
+    distance_mm = std::max(distance_mm, p.dot(towards) + reach);
+  }
+  eye.position_mm = eye.target_mm + towards * distance_mm;
   return eye;
 }
 
