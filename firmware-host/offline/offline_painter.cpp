@@ -17,12 +17,14 @@ Result<OfflinePainter> OfflinePainter::create(const Surface& surface, const Scop
   if (!layout) return tl::unexpected(layout.error());
   self.layout_ = std::make_unique<AtlasLayout>(std::move(*layout));
 
-  const MapperLimits limits{.max_triangles_per_step =
-                                static_cast<std::uint32_t>(surface.mesh.triangles.size())};
+  // A view in one part: nothing waits here, and by then all that hides is known.
+  const MapperLimits limits{
+      .max_triangles_per_step = static_cast<std::uint32_t>(surface.mesh.triangles.size()) + 48,
+      .max_rays_per_step = 1u << 31};
   auto mapper = Mapper::create(surface, options.seen_from, scope, limits);
   if (!mapper) return tl::unexpected(mapper.error());
   self.mapper_ = std::make_unique<Mapper>(std::move(*mapper));
-  self.patch_ = CutoutPatch(limits.max_triangles_per_step);
+  self.patch_ = CutoutPatch(patch_capacity(limits));
 
   auto painter = Painter::create(surface, *self.layout_, scope, {.seen_from = options.seen_from});
   if (!painter) return tl::unexpected(painter.error());
