@@ -67,19 +67,22 @@ Result<void> take_seeds_and_range(Arguments& arguments) {
   return {};
 }
 
-void tell(const SurfaceFigures& figures, const Arguments& arguments) {
-  const char* format =
-      arguments.json
-          ? "{\"region_ml\": %.3f, \"filled_voxels\": %zu, \"volume_ml\": %.3f, \"area_mm2\": %.1f, "
-            "\"euler_number\": %ld, \"closed\": %s, \"vertices\": %zu, \"triangles\": %zu, \"hash\": "
-            "\"%s\"}\n"
-          : "region      %.2f ml (%zu voxels of it filled gaps and cavities)\nsurface     %.2f ml, %.0f mm2, "
-            "Euler "
-            "number %ld, "
-            "closed: %s\n            %zu vertices, %zu triangles\nhash        %s\n";
-  const char* closed = figures.closed ? (arguments.json ? "true" : "yes") : (arguments.json ? "false" : "no");
-  std::printf(format, figures.region_ml, figures.filled_voxels, figures.volume_ml, figures.area_mm2,
-              figures.euler_number, closed, figures.vertices, figures.triangles, figures.hash.c_str());
+void tell(const SurfaceFigures& figures) {
+  std::printf("region      %.2f ml (%zu voxels of it filled gaps and cavities)\n", figures.region_ml,
+              figures.filled_voxels);
+  std::printf("surface     %.2f ml, %.0f mm2, Euler number %ld, %s\n", figures.volume_ml, figures.area_mm2,
+              figures.euler_number, figures.closed ? "closed" : "open");
+  std::printf("            %zu vertices, %zu triangles\nhash        %s\n", figures.vertices,
+              figures.triangles, figures.hash.c_str());
+}
+
+void tell_json(const SurfaceFigures& figures) {
+  std::printf("{\"region_ml\": %.3f, \"filled_voxels\": %zu, \"volume_ml\": %.3f, \"area_mm2\": %.1f, ",
+              figures.region_ml, figures.filled_voxels, figures.volume_ml, figures.area_mm2);
+  std::printf(
+      "\"euler_number\": %ld, \"closed\": %s, \"vertices\": %zu, \"triangles\": %zu, \"hash\": \"%s\"}\n",
+      figures.euler_number, figures.closed ? "true" : "false", figures.vertices, figures.triangles,
+      figures.hash.c_str());
 }
 
 int run(Arguments& arguments) {
@@ -93,7 +96,7 @@ int run(Arguments& arguments) {
     std::fprintf(stderr, "orcart surface: %s\n", figures.error().message.c_str());
     return 1;
   }
-  tell(*figures, arguments);
+  arguments.json ? tell_json(*figures) : tell(*figures);
   return 0;
 }
 

@@ -47,6 +47,8 @@ SurfaceFigures measure(const Surface& surface, const GrownRegion& region) {
 }  // namespace
 
 Result<SurfaceFigures> make_surface_file(const SurfaceCommand& command, const SurfaceProgress& progress) {
+  if (command.out.extension() != ".ply")
+    return fail(command.out.string() + ": the surface is written as PLY; a name ending in .ply is accepted");
   progress(1, 3, "growing the region");
   auto region = grow_region(command.region);
   if (!region) return tl::unexpected(region.error());

@@ -44,5 +44,14 @@ TEST(SurfaceCommand, LeavesNoFileWhereItFails) {
   EXPECT_FALSE(std::filesystem::exists(folder / "ball.ply"));
 }
 
+TEST(SurfaceCommand, RefusesAnotherKindOfFile) {
+  const TemporaryFolder folder;
+  SurfaceCommand wrong = command(folder, {20, 20, 20});
+  wrong.out = folder / "ball.stl";
+  const auto figures = make_surface_file(wrong, [](int, int, const std::string&) {});
+  ASSERT_FALSE(figures);
+  EXPECT_NE(figures.error().message.find("ending in .ply is accepted"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace orcart
