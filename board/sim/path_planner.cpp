@@ -130,17 +130,27 @@ double gain_of(const Candidate& candidate, const Patches& seen) {
       std::ranges::count_if(candidate.shows, [&](std::uint64_t patch) { return !seen.contains(patch); }));
 }
 
-/// The best next place from `here`; null where none can be reached in one move.
+double nearest_visit_mm(const Candidate& candidate, const std::vector<RestingPlace>& visited) {
+  double nearest = 1e9;
+  for (const RestingPlace& place : visited)
+    nearest = std::min(nearest, (place.at_mm - candidate.place.at_mm).norm());
+  return nearest;
+}
+
+/// The best next place after those visited: much new wall, away from where the scope has been, not far. Null
+/// where none can be reached in one straight move.
 const Candidate* best_next(const PlanRequest& request, const std::vector<Candidate>& all,
-                           const RestingPlace& here, const Patches& seen) {
+                           const std::vector<RestingPlace>& visited, const Patches& seen) {
+  const RestingPlace& here = visited.back();
   const double move_s = request.script.press_every_s - request.script.rest_s;
   const double longest_mm = kFastest_mm_s * move_s / kPeakOverMean;
   const auto room = static_cast<float>(request.script.room_mm);
   std::vector<std::pair<double, const Candidate*>> order;
   for (const Candidate& candidate : all) {
     const double way_mm = (candidate.place.at_mm - here.at_mm).norm();
-    if (way_mm > 1.5 && way_mm <= longest_mm)
-      order.emplace_back(gain_of(candidate, seen) - 0.4 * way_mm, &candidate);
+    if (way_mm < 1.5 || way_mm > longest_mm) continue;
+    const double away_mm = std::min(nearest_visit_mm(candidate, visited), 5.0);
+    order.emplace_back(gain_of(candidate, seen) + 0.8 * away_mm - 0.2 * way_mm, &candidate);
   }
   std::ranges::sort(order, [](const auto& a, const auto& b) { return a.first > b.first; });
   for (const auto& [score, candidate] : order)
@@ -177,7 +187,7 @@ Result<ScopeWay> plan_way(const PlanRequest& request) {
   for (int i = 0; i < places_in(script) && next != nullptr; ++i) {
     way.places.push_back(next->place);
     seen.insert(next->shows.begin(), next->shows.end());
-    next = best_next(request, all, way.places.back(), seen);
+    next = best_next(request, all, way.places, seen);
   }
   if (way.places.size() < 2)
     return fail("the scope has room at one place only; a smaller room_mm or a larger surface would do");

@@ -16,18 +16,19 @@ struct ProcedureScript {
   std::uint64_t seed = 1;
   double duration_s = 30;
   SeenFrom seen_from = SeenFrom::inside;
-  /// From the surface's centre to where the scope comes from (burr hole, craniotomy), M; any length.
-  Eigen::Vector3d entry_direction{-0.35, -0.62, 0.70};
-  double entry_distance_mm =
-      45;  ///< inside: from the surface's outermost point along the direction to the burr hole
+  /// From the surface's centre to where the scope comes from (burr hole, craniotomy), M; any length. This one
+  /// is about Frazier's point: posterior, along the right lateral ventricle's long axis.
+  Eigen::Vector3d entry_direction{-0.28, 0.82, 0.50};
+  /// Inside: from the surface's outermost point along the direction to the burr hole.
+  double entry_distance_mm = 45;
   double press_every_s = 1.75;  ///< the scope moves to a new place, rests, and the pedal is pressed
   double rest_s = 0.5;          ///< how long it rests there
   double undo_at = 0.45;        ///< a double press: takes back the capture before
   double stream_at = 0.62;      ///< the pedal is held for 1.3 s while the scope moves on
   double hide_at = 0.80;        ///< the tracker does not see the scope for 1.1 s while it moves on
   double bump_at = -1;          ///< the reference (with its patient, in the tracker's eyes) is moved by 12 mm
-  double room_mm = 2.2;         ///< least distance from C to the wall: half a 2.7 mm shaft and a little
-  double widest_pivot_rad = 0.22;  ///< inside: how far the shaft may lean about the burr hole
+  double room_mm = 2.0;         ///< least distance from C to the wall: half a 2.7 mm shaft and a little
+  double widest_pivot_rad = 0.28;  ///< inside: how far the shaft may lean about the burr hole
   double sway_rad = 0.35;          ///< slow rotation about the shaft, to each side
   double tremor_mm = 0.03;         ///< of the hand, about 9 Hz; its slow drift is five times as large
 };

@@ -91,7 +91,7 @@ Illumination ScopeCamera::State::illumination(const RayHit& hit, const Eigen::Ve
   if (look.specular == Effect::off || tilt > 0.25F) return light;
   const float gloss = baked->at(hit).gloss;
   const float sheen = std::exp(-tilt / 0.05F) * smooth_step(0.50F, 0.95F, gloss);
-  const float spark = std::exp(-tilt / 0.007F) * smooth_step(0.42F, 0.62F, gloss);
+  const float spark = std::exp(-tilt / 0.007F) * smooth_step(0.42F, 0.85F, gloss);
   light.specular = near * near * (0.10F * sheen + 1.0F * spark);
   return light;
 }
