@@ -142,7 +142,7 @@ void Cart::State::build_stages() {
                                                          .lanes = lanes,
                                                          .patches = patches,
                                                          .captures = captures,
-                                                         .sink = setup.sink,
+                                                         .sink = setup.session,
                                                          .context = &context,
                                                          .buffer_count = setup.ports.camera.buffer_count()});
   const PathBudget budget = path_budget(context.render_class(), config.panel.refresh_hz);
@@ -217,6 +217,8 @@ ThreadPlan Cart::State::plan(ThreadId id) {
       plan.ledgers = {ledger(StageId::painter), ledger(StageId::panel)};
       break;
     case ThreadId::session:
+      plan.stages = {setup.session};
+      plan.ledgers = {ledger(StageId::session)};
       break;
   }
   return plan;
@@ -228,6 +230,7 @@ std::vector<ThreadPlan> Cart::State::plans() {
        {ThreadId::pedal, ThreadId::tracker, ThreadId::camera, ThreadId::mapping, ThreadId::render}) {
     all.push_back(plan(id));
   }
+  if (setup.session != nullptr) all.push_back(plan(ThreadId::session));
   return all;
 }
 
@@ -273,6 +276,7 @@ void Cart::stop() noexcept {
   if (!s.running) return;
   s.running = false;
   for (std::size_t i = s.threads.size(); i > 0; --i) s.threads[i - 1]->stop();
+  if (s.setup.session != nullptr) (void)s.setup.session->step(s.setup.clock.now());
   s.setup.ports.camera.stop();
   unlock_process_memory();
   (void)s.context.make_current();
@@ -283,8 +287,11 @@ void Cart::run_simulated(SimulatedClock& clock, Instant end) {
   if (!s.runner) {
     s.build_stages();
     (void)s.setup.ports.camera.start();
-    s.runner = std::make_unique<SimulatedRunner>(s.plans(), clock);
-    for (std::size_t i = 0; i < kThreadCount - 1; ++i) s.thread_ledgers.push_back(&s.runner->ledger(i));
+    s.running = true;
+    std::vector<ThreadPlan> plans = s.plans();
+    const std::size_t count = plans.size();
+    s.runner = std::make_unique<SimulatedRunner>(std::move(plans), clock);
+    for (std::size_t i = 0; i < count; ++i) s.thread_ledgers.push_back(&s.runner->ledger(i));
   }
   s.runner->run_until(end);
 }
@@ -312,6 +319,10 @@ const GlContext& Cart::context() const {
 }
 Painter& Cart::painter() {
   return *state_->painter;
+}
+
+const Status& Cart::status() const {
+  return state_->showing->status();
 }
 
 CartFigures Cart::figures() const {

@@ -13,11 +13,13 @@
 #include "firmware-host/app/cart_config.hpp"
 #include "firmware-host/app/patient.hpp"
 #include "firmware-host/app/topology.hpp"
-#include "firmware-host/stages/capture_sink.hpp"
+#include "firmware-host/session/session_stage.hpp"
+#include "firmware-host/stages/frame_ledger.hpp"
 #include "realtime/kernel/clock.hpp"
 #include "realtime/kernel/thread_loop.hpp"
 #include "render/atlas/painter.hpp"
 #include "render/egl/context.hpp"
+#include "render/hud/status.hpp"
 
 namespace orcart {
 
@@ -45,8 +47,8 @@ class Cart {
     const Patient& patient;
     Ports ports;
     Clock& clock;
-    CaptureSink* sink = nullptr;  ///< null: nothing is kept on disk
-    double longest_run_s = 3600;  ///< what the ledgers of frames and captures have room for
+    SessionStage* session = nullptr;  ///< null: nothing is kept on disk
+    double longest_run_s = 3600;      ///< what the ledgers of frames and captures have room for
   };
   /// Builds and arms everything but the threads. The calling thread must be the one that calls
   /// run_simulated(), or start() and stop().
@@ -55,7 +57,8 @@ class Cart {
 
   /// One thread per row of the topology, along the way of the data.
   Result<void> start();
-  /// Backward; idempotent. Afterwards the GL context is current on the calling thread again.
+  /// Backward, what the session still holds last; idempotent. Afterwards the GL context is current on the
+  /// calling thread again.
   void stop() noexcept;
   /// Instead of start(): everything on the calling thread in simulated time, the clock given at creation
   /// being `clock`.
@@ -71,6 +74,8 @@ class Cart {
   RenderClass render_class() const;
   const GlContext& context() const;
   Painter& painter();  ///< after stop(), or before start()
+  /// What the panel says; after stop(), or between calls of run_simulated().
+  const Status& status() const;
   /// For a progress line. Any thread.
   struct Now {
     double coverage = 0;

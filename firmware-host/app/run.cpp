@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "firmware-host/app/cart.hpp"
+#include "firmware-host/app/kept_session.hpp"
 #include "firmware-host/app/run_figures.hpp"
 #include "firmware-host/app/simulated_devices.hpp"
 #include "firmware-host/app/truth_check.hpp"
@@ -181,6 +182,13 @@ ExitCode run(const Options& options) {
   const bool simulate = options.clock == ClockKind::simulated;
   Clock& clock = simulate ? static_cast<Clock&>(simulated) : real;
   Progress progress;
+  std::unique_ptr<KeptSession> session;
+  if (!options.session.empty()) {
+    auto made = KeptSession::create(
+        {.file = options.session, .config = *config, .patient = *patient, .started_at = clock.now()});
+    if (!made) return complain(made.error(), ExitCode::usage);
+    session = std::move(*made);
+  }
   auto devices = SimulatedDevices::create(
       {.config = *config, .patient = *patient, .clock = clock, .drawing = [&](double done) {
          progress.show("drawing what the camera will see", done);
@@ -191,12 +199,18 @@ ExitCode run(const Options& options) {
                             .patient = *patient,
                             .ports = (*devices)->ports(),
                             .clock = clock,
+                            .session = session ? &session->stage() : nullptr,
                             .longest_run_s = config->simulation.duration_s + 10});
   if (!cart) return complain(cart.error(), ExitCode::device);
   auto coverage = go(**cart, **devices, clock, simulate ? &simulated : nullptr, progress);
   if (!coverage) return complain(coverage.error(), ExitCode::device);
   const double memory_mb = resident_mb();
   (*cart)->stop();
+  ExitCode code = ExitCode::ok;
+  if (session) {
+    if (auto finished = session->finish((*cart)->stage_ledgers()); !finished)
+      code = complain(finished.error(), ExitCode::failed);
+  }
   RunReport report = figures_of(**cart, {.config = *config,
                                          .patient = *patient,
                                          .started = (*devices)->start(),
@@ -215,7 +229,8 @@ ExitCode run(const Options& options) {
       return complain(written.error(), ExitCode::failed);
   }
   std::fputs(summary_of(report, options.report_dir).c_str(), stdout);
-  return ExitCode::ok;
+  if (session) std::fputs(session->sentence().c_str(), stdout);
+  return code;
 }
 
 }  // namespace orcart

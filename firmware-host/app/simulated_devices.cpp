@@ -32,6 +32,16 @@ NdiEmulatorSettings emulator_settings(const CartConfig& config, Instant now) {
   return settings;
 }
 
+std::vector<PedalEdge> edges_of(const SimulatedWorld& world, const std::vector<Nanos>& more_presses) {
+  constexpr Nanos kPressLength = 110ms;
+  std::vector<PedalEdge> edges = world.pedal_edges();
+  for (const Nanos press : more_presses) {
+    edges.push_back({.at = world.start() + press, .kind = EdgeKind::pressed});
+    edges.push_back({.at = world.start() + press + kPressLength, .kind = EdgeKind::released});
+  }
+  return edges;
+}
+
 }  // namespace
 
 struct SimulatedDevices::State {
@@ -55,8 +65,9 @@ struct SimulatedDevices::State {
                 .stamp_at = request.config.camera.stamp == StampMeaning::start_of_exposure
                                 ? StampAt::exposure_start
                                 : StampAt::exposure_end,
-                .buffers = kFrameBuffers}),
-        pedal(request.clock, {.edges = world.pedal_edges(), .bounce = {.pairs = 2}}),
+                .buffers = kFrameBuffers,
+                .faults = request.camera_faults}),
+        pedal(request.clock, {.edges = edges_of(world, request.more_presses), .bounce = {.pairs = 2}}),
         pictures(mode_of(request.config), picture_instants(world.start(), world.end(), request.pictures)),
         observers{&pictures},
         panel(request.clock, {.mode = mode_of(request.config), .first_vblank = request.clock.now() + 7ms},
@@ -74,8 +85,10 @@ Result<std::unique_ptr<SimulatedDevices>> SimulatedDevices::create(const Request
   const SimulationConfig& simulation = config.simulation;
   auto rays = RayScene::create(request.patient.surface.mesh);
   if (!rays) return tl::unexpected(rays.error());
-  ProcedureScript script{
-      .seed = simulation.seed, .duration_s = simulation.duration_s, .seen_from = config.seen_from};
+  ProcedureScript script = request.script;
+  script.seed = simulation.seed;
+  script.duration_s = simulation.duration_s;
+  script.seen_from = config.seen_from;
   script.entry_direction = {simulation.entry_direction[0], simulation.entry_direction[1],
                             simulation.entry_direction[2]};
   auto world = SimulatedWorld::create(
@@ -125,6 +138,9 @@ const SimulatedWorld& SimulatedDevices::world() const {
 }
 const PanelPictures& SimulatedDevices::pictures() const {
   return state_->pictures;
+}
+NdiFaultSchedule& SimulatedDevices::tracker_faults() {
+  return state_->emulator.faults();
 }
 
 }  // namespace orcart

@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "board/sim/movie_file.hpp"
+#include "board/sim/ndi/fault_schedule.hpp"
+#include "board/sim/simulated_frame_source.hpp"
 #include "board/sim/simulated_world.hpp"
 #include "firmware-host/app/cart.hpp"
 #include "firmware-host/app/panel_pictures.hpp"
@@ -20,6 +22,9 @@ class SimulatedDevices {
     Clock& clock;
     std::size_t pictures = 6;                  ///< panel pictures to keep, spread over the procedure
     std::function<void(double done)> drawing;  ///< progress of drawing what the camera will see
+    ProcedureScript script{};                  ///< its seed, duration, side and entry are the configuration's
+    std::vector<CameraFaultPeriod> camera_faults{};
+    std::vector<Nanos> more_presses{};  ///< besides the script's, short ones, since the procedure's start
   };
   /// Plans the procedure, and draws its pictures into a movie file unless they lie there already.
   static Result<std::unique_ptr<SimulatedDevices>> create(const Request& request);
@@ -31,6 +36,8 @@ class SimulatedDevices {
   Instant end() const;
   const SimulatedWorld& world() const;
   const PanelPictures& pictures() const;
+  /// What the tracker gets wrong; before any thread asks it.
+  NdiFaultSchedule& tracker_faults();
 
  private:
   struct State;
