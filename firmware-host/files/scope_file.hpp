@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "realtime/base/result.hpp"
 #include "realtime/geometry/pose.hpp"
@@ -11,8 +12,9 @@
 namespace orcart {
 
 /// All errors at once, each with its line; unknown keys are refused; a lens that is not monotone to the
-/// mask's edge is refused.
-Result<ScopeModel> read_scope(const std::filesystem::path& file);
+/// mask's edge is refused. `notes` takes what was mended, e.g. a pose that was nearly a rotation.
+Result<ScopeModel> read_scope(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);
+/// Atomic; every number is written in the fewest digits that give it back.
 Result<void> write_scope(const std::filesystem::path& file, const ScopeModel& scope);
 
 struct RegistrationFile {
@@ -21,7 +23,8 @@ struct RegistrationFile {
   double fre_mm = 0;         ///< fiducial registration error, RMS
   double predicted_tre_mm = 0;
 };
-Result<RegistrationFile> read_registration(const std::filesystem::path& file);
+Result<RegistrationFile> read_registration(const std::filesystem::path& file,
+                                           std::vector<std::string>* notes = nullptr);
 Result<void> write_registration(const std::filesystem::path& file, const RegistrationFile& registration);
 
 }  // namespace orcart

@@ -1,0 +1,180 @@
+// Painted surfaces out: all files of a set are made in a folder beside, then renamed into place.
+#include "firmware-host/files/textured_file.hpp"
+
+#include <unistd.h>
+
+#include <bit>
+#include <charconv>
+#include <string>
+#include <vector>
+
+#include "firmware-host/files/picture_file.hpp"
+#include "firmware-host/files/surface_checks.hpp"
+#include "firmware-host/files/whole_file.hpp"
+
+namespace orcart {
+
+static_assert(std::endian::native == std::endian::little, "bytes are written as they lie in memory");
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Files that appear together. What was staged and not published goes with it.
+class FileSet {
+ public:
+  explicit FileSet(const fs::path& leader) : target_(leader.parent_path()) {
+    staging_ = target_ / ("." + leader.filename().string() + ".part-" + std::to_string(::getpid()));
+  }
+  ~FileSet() {
+    std::error_code ignored;
+    fs::remove_all(staging_, ignored);
+  }
+  FileSet(const FileSet&) = delete;
+  FileSet& operator=(const FileSet&) = delete;
+
+  Result<void> begin() const {
+    std::error_code error;
+    fs::create_directory(staging_, error);
+    if (error) return fail(staging_.string() + ": cannot be made: " + error.message());
+    return {};
+  }
+  /// Where a file is to be written; it will be renamed in the order of these calls.
+  fs::path add(const std::string& name) {
+    names_.push_back(name);
+    return staging_ / name;
+  }
+  Result<void> publish() const {
+    for (const std::string& name : names_)
+      if (fs::is_directory(target_ / name))
+        return fail((target_ / name).string() + ": is a folder; a file's name is expected");
+    for (const std::string& name : names_) {
+      std::error_code error;
+      fs::rename(staging_ / name, target_ / name, error);
+      if (error) return fail((target_ / name).string() + ": cannot be written: " + error.message());
+    }
+    return {};
+  }
+
+ private:
+  fs::path target_, staging_;
+  std::vector<std::string> names_;
+};
+
+void append(std::string& text, float value) {
+  char digits[24];
+  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
+
+void append(std::string& text, std::uint32_t value) {
+  char digits[12];
+  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
+
+/// A line of comment, without what would end it early.
+std::string comment(const char* start, std::string words) {
+  for (char& c : words)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  return words.empty() ? "" : start + words + "\n";
+}
+
+std::string identity_comments(const std::string& start, const Surface& surface) {
+  return start + "orcart painted surface, millimetres\n" + start + "SPACE=LPS\n" +
+         comment((start + "orcart hash ").c_str(), checks::mesh_hash(surface.mesh)) +
+         comment((start + "orcart series ").c_str(), surface.identity.series) +
+         comment((start + "orcart frame_of_reference ").c_str(), surface.identity.frame_of_reference);
+}
+
+std::string obj_text(const TexturedSurface& textured, const std::string& mtl_name) {
+  std::string text = identity_comments("# ", textured.surface) + "mtllib " + mtl_name + "\n";
+  for (const Eigen::Vector3f& vertex : textured.surface.mesh.vertices_mm) {
+    text += 'v';
+    for (const float coordinate : vertex) append(text += ' ', coordinate);
+    text += '\n';
+  }
+  for (const auto& corners : textured.corners_uv)
+    for (const Eigen::Vector2f& uv : corners) {
+      append(text += "vt ", uv.x());
+      append(text += ' ', uv.y());
+      text += '\n';
+    }
+  text += "usemtl painted\n";
+  std::uint32_t place = 0;
+  for (const auto& triangle : textured.surface.mesh.triangles) {
+    text += 'f';
+    for (const std::uint32_t vertex : triangle) {
+      append(text += ' ', vertex + 1);
+      append(text += '/', ++place);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string mtl_text(const std::string& png_name) {
+  return "# orcart painted surface\nnewmtl painted\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd " +
+         png_name + "\n";
+}
+
+template <class Value>
+void append_bytes(std::string& text, const Value* values, std::size_t count) {
+  text.append(reinterpret_cast<const char*>(values), count * sizeof(Value));
+}
+
+std::string ply_bytes(const TexturedSurface& textured, const std::string& png_name) {
+  const TriangleMesh& mesh = textured.surface.mesh;
+  std::string text = "ply\nformat binary_little_endian 1.0\n" +
+                     identity_comments("comment ", textured.surface) + "comment TextureFile " + png_name +
+                     "\nelement vertex " + std::to_string(mesh.vertices_mm.size()) +
+                     "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                     std::to_string(mesh.triangles.size()) +
+                     "\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+                     "end_header\n";
+  for (const Eigen::Vector3f& vertex : mesh.vertices_mm) append_bytes(text, vertex.data(), 3);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    text += '\3';
+    append_bytes(text, mesh.triangles[t].data(), 3);
+    text += '\6';
+    for (const Eigen::Vector2f& uv : textured.corners_uv[t]) append_bytes(text, uv.data(), 2);
+  }
+  return text;
+}
+
+/// The paint over grey, so that viewers that know no alpha show bare tissue where nothing was painted.
+std::vector<std::uint8_t> over_grey(std::span<const std::uint8_t> rgba) {
+  constexpr unsigned kGrey = 150;
+  std::vector<std::uint8_t> opaque(rgba.begin(), rgba.end());
+  for (std::size_t i = 0; i < opaque.size(); i += 4) {
+    const unsigned alpha = rgba[i + 3];
+    for (std::size_t c = 0; c < 3; ++c)
+      opaque[i + c] = static_cast<std::uint8_t>((rgba[i + c] * alpha + kGrey * (255 - alpha) + 127) / 255);
+    opaque[i + 3] = 255;
+  }
+  return opaque;
+}
+
+}  // namespace
+
+Result<void> write_textured(const fs::path& file, const TexturedSurface& textured) {
+  const std::string extension = file.extension().string();
+  if (extension != ".obj" && extension != ".ply")
+    return fail(file.string() + ": a painted surface is written as .obj or .ply");
+  if (textured.corners_uv.size() != textured.surface.mesh.triangles.size())
+    return fail(file.string() + ": is not written: " + std::to_string(textured.corners_uv.size()) +
+                " triangles have places in the picture, " +
+                std::to_string(textured.surface.mesh.triangles.size()) + " are needed");
+  const std::string stem = file.stem().string(), png = stem + ".png", mtl = stem + ".mtl";
+  FileSet set(file);
+  if (auto begun = set.begin(); !begun) return begun;
+  if (auto written =
+          write_png(set.add(png), textured.width_texels, textured.height_texels, over_grey(textured.rgba));
+      !written)
+    return written;
+  if (extension == ".obj")
+    if (auto written = write_whole_file(set.add(mtl), mtl_text(png)); !written) return written;
+  const std::string surface = extension == ".obj" ? obj_text(textured, mtl) : ply_bytes(textured, png);
+  if (auto written = write_whole_file(set.add(file.filename().string()), surface); !written) return written;
+  return set.publish();
+}
+
+}  // namespace orcart

@@ -1,0 +1,31 @@
+// A painted surface for other programs: OBJ with its MTL and PNG, or PLY with its PNG.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "realtime/base/result.hpp"
+#include "realtime/geometry/triangle_mesh.hpp"
+
+namespace orcart {
+
+/// What is written; lent for the call.
+struct TexturedSurface {
+  const Surface& surface;
+  /// Per triangle, a place in the picture for each corner: 0..1, origin bottom left.
+  std::span<const std::array<Eigen::Vector2f, 3>> corners_uv;
+  int width_texels = 0, height_texels = 0;
+  std::span<const std::uint8_t> rgba;  ///< straight alpha, row 0 on top
+};
+
+/// `file` ends in .obj (NAME.mtl and NAME.png come beside it) or .ply (NAME.png; the places are the faces'
+/// `texcoord`, the picture is named in a TextureFile comment). The picture is opaque: what has no paint is
+/// grey. Millimetres, LPS, said in a comment with the surface's identity. All files are made ready before the
+/// first appears under its name; on an error none does.
+Result<void> write_textured(const std::filesystem::path& file, const TexturedSurface& textured);
+
+}  // namespace orcart

@@ -1,0 +1,115 @@
+// Painted surfaces for other programs: complete sets with names that agree, or nothing.
+#include "firmware-host/files/textured_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "firmware-host/files/picture_file.hpp"
+#include "firmware-host/files/surface_file.hpp"
+#include "tests/firmware-host/files/temporary_folder.hpp"
+
+namespace orcart {
+namespace {
+
+/// Two triangles of a square, and a picture of two texels: red paint, and none.
+struct Painted {
+  Surface surface;
+  std::vector<std::array<Eigen::Vector2f, 3>> corners_uv;
+  std::vector<std::uint8_t> rgba = {200, 0, 0, 255, 1, 2, 3, 0};
+
+  Painted() {
+    TriangleMesh mesh;
+    mesh.vertices_mm = {{0, 0, 0.1f}, {1, 0, 0}, {1, 1.25f, 0}, {-1e-7f, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    surface = *make_surface(std::move(mesh), "square");
+    surface.identity.series = "ch2.nii.gz";
+    corners_uv = {{Eigen::Vector2f{0, 0}, {0.5f, 0}, {0.5f, 1}},
+                  {Eigen::Vector2f{0, 0}, {0.5f, 1}, {0, 0.75f}}};
+  }
+  TexturedSurface textured() const {
+    return {
+        .surface = surface, .corners_uv = corners_uv, .width_texels = 2, .height_texels = 1, .rgba = rgba};
+  }
+};
+
+std::string text_of(const std::filesystem::path& file) {
+  std::stringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+TEST(TexturedFile, AnObjNamesItsMaterialAndThatItsPicture) {
+  const TemporaryFolder folder;
+  const auto written = write_textured(folder / "painted.obj", Painted().textured());
+  ASSERT_TRUE(written) << written.error().message;
+  EXPECT_EQ(folder.count(), 3U);
+  const std::string obj = text_of(folder / "painted.obj");
+  EXPECT_NE(obj.find("# SPACE=LPS\n"), std::string::npos);
+  EXPECT_NE(obj.find("\nmtllib painted.mtl\nv 0 0 0.1\n"), std::string::npos);
+  EXPECT_NE(obj.find("\nvt 0 0.75\nusemtl painted\nf 1/1 2/2 3/3\nf 1/4 3/5 4/6\n"), std::string::npos);
+  const std::string mtl = text_of(folder / "painted.mtl");
+  EXPECT_NE(mtl.find("newmtl painted\n"), std::string::npos);
+  EXPECT_NE(mtl.find("map_Kd painted.png\n"), std::string::npos);
+}
+
+TEST(TexturedFile, ThePictureIsOpaqueWithGreyForWhatHasNoPaint) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_textured(folder / "painted.obj", Painted().textured()));
+  const auto picture = read_picture(folder / "painted.png");
+  ASSERT_TRUE(picture) << picture.error().message;
+  EXPECT_EQ(picture->rgba, (std::vector<std::uint8_t>{200, 0, 0, 255, 150, 150, 150, 255}));
+}
+
+TEST(TexturedFile, ItsSurfaceIsReadBackWithItsIdentity) {
+  const TemporaryFolder folder;
+  const Painted painted;
+  for (const char* name : {"painted.obj", "painted.ply"}) {
+    ASSERT_TRUE(write_textured(folder / name, painted.textured()));
+    const auto back = read_surface(folder / name);
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->mesh.triangles, painted.surface.mesh.triangles);
+    EXPECT_EQ(back->identity.hash, painted.surface.identity.hash) << name;
+    EXPECT_EQ(back->identity.series, "ch2.nii.gz");
+  }
+}
+
+TEST(TexturedFile, APlyHoldsThePlacesOfEachFace) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_textured(folder / "painted.ply", Painted().textured()));
+  EXPECT_EQ(folder.count(), 2U);
+  const std::string ply = text_of(folder / "painted.ply");
+  EXPECT_NE(ply.find("comment TextureFile painted.png\n"), std::string::npos);
+  const std::size_t face = 1 + 12 + 1 + 24;
+  ASSERT_EQ(ply.size(), ply.find("end_header\n") + 11 + 4 * 12 + 2 * face);
+  std::array<float, 6> last{};
+  std::memcpy(last.data(), ply.data() + ply.size() - 24, 24);
+  EXPECT_EQ(last, (std::array<float, 6>{0, 0, 0.5f, 1, 0, 0.75f}));
+}
+
+TEST(TexturedFile, LeavesNothingWhereItFails) {
+  const TemporaryFolder folder;
+  Painted painted;
+  std::filesystem::create_directory(folder / "painted.mtl");
+  const auto taken = write_textured(folder / "painted.obj", painted.textured());
+  ASSERT_FALSE(taken);
+  EXPECT_NE(taken.error().message.find("painted.mtl: is a folder"), std::string::npos)
+      << taken.error().message;
+  painted.rgba.pop_back();
+  EXPECT_FALSE(write_textured(folder / "other.ply", painted.textured()));
+  painted.corners_uv.pop_back();
+  EXPECT_FALSE(write_textured(folder / "other.ply", painted.textured()));
+  EXPECT_FALSE(write_textured(folder / "no/such/folder.ply", Painted().textured()));
+  EXPECT_EQ(folder.count(), 1U);
+}
+
+TEST(TexturedFile, RefusesOtherFormats) {
+  const auto written = write_textured("/tmp/painted.glb", Painted().textured());
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().message, "/tmp/painted.glb: a painted surface is written as .obj or .ply");
+}
+
+}  // namespace
+}  // namespace orcart
