@@ -87,9 +87,9 @@ std::string tiles(const RunReport& r) {
   std::string out = "<div class=big>";
   std::uint64_t painted = 0, undone = 0, refused = 0;
   for (const auto& c : r.captures) {
-    painted += c.outcome == "painted";
-    undone += c.outcome == "undone";
-    refused += c.outcome != "painted" && c.outcome != "undone";
+    painted += c.outcome.starts_with("painted");
+    undone += c.outcome.starts_with("undone");
+    refused += c.outcome.starts_with("refused");
   }
   out += tile(text("%llu", static_cast<unsigned long long>(painted)), "pictures painted");
   out += tile(
@@ -132,7 +132,7 @@ std::string captures_table(const std::vector<CaptureRow>& captures) {
   const auto ms = [](double v) { return v < 0 ? std::string("&ndash;") : text("%.1f ms", v); };
   for (const auto& c : captures) {
     out += text("<tr><td>%u</td><td>%.2f s</td><td class=%s>", c.unit, c.edge_s,
-                c.outcome == "painted" || c.outcome == "undone" ? "ok" : "bad") +
+                c.outcome.starts_with("refused") ? "bad" : "ok") +
            escaped(c.outcome) + "</td><td>" + ms(c.to_acknowledged_ms) + "</td><td>" + ms(c.to_painted_ms) +
            "</td><td>" + escaped(c.pose) + "</td><td>" + ms(c.pose_distance_ms) + "</td></tr>";
   }
@@ -284,7 +284,7 @@ Result<void> write_report(const std::filesystem::path& dir, const RunReport& rep
 
 std::string summary_of(const RunReport& r, const std::filesystem::path& dir) {
   std::uint64_t painted = 0, other = 0;
-  for (const auto& c : r.captures) (c.outcome == "painted" ? painted : other) += 1;
+  for (const auto& c : r.captures) (c.outcome.starts_with("painted") ? painted : other) += 1;
   std::string out;
   out +=
       text("%.0f s of %s procedure: %llu frames shown, %llu pictures painted, %llu undone or refused.\n",

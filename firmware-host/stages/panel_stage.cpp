@@ -75,6 +75,12 @@ StepReport PanelStage::step(Instant now) noexcept {
   submitted.frame.submitted_at = parts_.clock.now();
   parts_.painter_stage.mark_submitted();
   ++presented_;
+  ++since_counted_;
+  if (now >= count_due_) {
+    screen_state_.status.rendered_hz = static_cast<float>(static_cast<double>(since_counted_) / seconds(1s + (now - count_due_)));
+    since_counted_ = 0;
+    count_due_ = now + 1s;
+  }
   return {.worked = true, .items = 1};
 }
 
@@ -149,19 +155,19 @@ void PanelStage::choose_notice(Instant now) noexcept {
   const Status& status = screen_state_.status;
   screen_state_.status.notice.level = Notice::Level::none;
   if (status.video == Freshness::lost)
-    return notice(Notice::Level::alarm, "NO LIVE VIDEO: check the camera unit and its cable");
+    return notice(Notice::Level::alarm, "NO LIVE VIDEO: check the camera's cable");
   if (status.tracker == Freshness::lost)
-    return notice(Notice::Level::alarm, "TRACKER LOST: check its power and cable");
+    return notice(Notice::Level::alarm, "TRACKER LOST: check its cable");
   if (!status.tool_seen)
-    return notice(Notice::Level::warning, "TOOL NOT SEEN: clear the line of sight to the scope's markers");
+    return notice(Notice::Level::warning, "TOOL NOT SEEN: clear its line of sight");
   if (!status.reference_seen)
     return notice(Notice::Level::warning,
-                  "REFERENCE NOT SEEN: clear the line of sight to the patient's marker");
-  if (camera_.frozen) return notice(Notice::Level::warning, "VIDEO FROZEN? The same picture keeps coming");
+                  "REFERENCE NOT SEEN: clear its line of sight");
+  if (camera_.frozen) return notice(Notice::Level::warning, "VIDEO FROZEN? The picture repeats");
   if (paint.failed_at != Instant{} && now - paint.failed_at < kNoticeTime)
     return notice(Notice::Level::warning, words_for(paint.last_refusal));
   if (paint.warned_at != Instant{} && now - paint.warned_at < kNoticeTime)
-    return notice(Notice::Level::warning, "PEDAL: stuck or an edge was lost; release it");
+    return notice(Notice::Level::warning, "PEDAL: stuck; let it go");
   if (paint.undone_at != Instant{} && now - paint.undone_at < kNoticeTime)
     return notice(Notice::Level::info, "Taken back");
 }
