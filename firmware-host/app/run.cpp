@@ -8,6 +8,7 @@
 
 #include "firmware-host/app/cart.hpp"
 #include "firmware-host/app/kept_session.hpp"
+#include "firmware-host/app/preview.hpp"
 #include "firmware-host/app/run_figures.hpp"
 #include "firmware-host/app/simulated_devices.hpp"
 #include "firmware-host/app/truth_check.hpp"
@@ -58,13 +59,14 @@ class Progress {
 
 /// Lets the cart go through the procedure; its coverage as it grew.
 Result<std::vector<CoveragePoint>> go(Cart& cart, const SimulatedDevices& devices, Clock& clock,
-                                      SimulatedClock* simulated, Progress& progress) {
+                                      SimulatedClock* simulated, const Preview* preview, Progress& progress) {
   std::vector<CoveragePoint> coverage;
   if (simulated == nullptr) {
     if (auto started = cart.start(); !started) return tl::unexpected(started.error());
   }
   const Instant end = devices.end() + 500ms;
-  while (clock.now() < end && stop_asked == 0) {
+  const auto quit = [&] { return stop_asked != 0 || (preview != nullptr && preview->quit_asked()); };
+  while (clock.now() < end && !quit()) {
     const Instant next = std::min(end, clock.now() + 250ms);
     if (simulated != nullptr) {
       cart.run_simulated(*simulated, next);
@@ -189,10 +191,23 @@ ExitCode run(const Options& options) {
     if (!made) return complain(made.error(), ExitCode::usage);
     session = std::move(*made);
   }
+  std::unique_ptr<Preview> preview;
+  if (options.panel == PanelKind::window) {
+    if (simulate)
+      return complain({"--panel window needs --clock real: a person watches in real time"}, ExitCode::usage);
+    const PanelConfig& panel = config->panel;
+    auto opened = Preview::open(
+        {.width_px = panel.width_px, .height_px = panel.height_px, .refresh_hz = panel.refresh_hz}, clock);
+    if (!opened) return complain(opened.error(), ExitCode::device);
+    preview = std::move(*opened);
+  }
   auto devices = SimulatedDevices::create(
-      {.config = *config, .patient = *patient, .clock = clock, .drawing = [&](double done) {
-         progress.show("drawing what the camera will see", done);
-       }});
+      {.config = *config,
+       .patient = *patient,
+       .clock = clock,
+       .preview = preview ? &preview->observer() : nullptr,
+       .pedal = preview ? &preview->pedal() : nullptr,
+       .drawing = [&](double done) { progress.show("drawing what the camera will see", done); }});
   progress.end();
   if (!devices) return complain(devices.error(), ExitCode::device);
   auto cart = Cart::create({.config = *config,
@@ -202,7 +217,7 @@ ExitCode run(const Options& options) {
                             .session = session ? &session->stage() : nullptr,
                             .longest_run_s = config->simulation.duration_s + 10});
   if (!cart) return complain(cart.error(), ExitCode::device);
-  auto coverage = go(**cart, **devices, clock, simulate ? &simulated : nullptr, progress);
+  auto coverage = go(**cart, **devices, clock, simulate ? &simulated : nullptr, preview.get(), progress);
   if (!coverage) return complain(coverage.error(), ExitCode::device);
   const double memory_mb = resident_mb();
   (*cart)->stop();

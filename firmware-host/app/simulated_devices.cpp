@@ -52,7 +52,7 @@ struct SimulatedDevices::State {
   SimulatedFrameSource camera;
   SimulatedGpio pedal;
   PanelPictures pictures;
-  std::array<PanelObserver*, 1> observers;
+  std::vector<PanelObserver*> observers;
   SimulatedPanel panel;
 
   State(SimulatedWorld made_world, MovieFile made_movie, const Request& request)
@@ -69,10 +69,14 @@ struct SimulatedDevices::State {
                 .faults = request.camera_faults}),
         pedal(request.clock, {.edges = edges_of(world, request.more_presses), .bounce = {.pairs = 2}}),
         pictures(mode_of(request.config), picture_instants(world.start(), world.end(), request.pictures)),
-        observers{&pictures},
+        observers(observers_of(pictures, request.preview)),
         panel(request.clock, {.mode = mode_of(request.config), .first_vblank = request.clock.now() + 7ms},
               observers) {}
 
+  static std::vector<PanelObserver*> observers_of(PanelPictures& kept, PanelObserver* preview) {
+    if (preview == nullptr) return {&kept};
+    return {&kept, preview};
+  }
   static PanelMode mode_of(const CartConfig& config) {
     return {.width_px = config.panel.width_px,
             .height_px = config.panel.height_px,

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "board/sim/live_pedal.hpp"
 #include "board/sim/movie_file.hpp"
 #include "board/sim/ndi/fault_schedule.hpp"
 #include "board/sim/simulated_frame_source.hpp"
@@ -20,6 +21,8 @@ class SimulatedDevices {
     const CartConfig& config;
     const Patient& patient;
     Clock& clock;
+    PanelObserver* preview = nullptr;          ///< sees every picture as well
+    LivePedal* pedal = nullptr;                ///< presses besides those of the script
     std::size_t pictures = 6;                  ///< panel pictures to keep, spread over the procedure
     std::function<void(double done)> drawing;  ///< progress of drawing what the camera will see
     ProcedureScript script{};                  ///< its seed, duration, side and entry are the configuration's

@@ -82,7 +82,7 @@ constexpr Budget budget_of(StageId id, RenderClass c) {
 /// End-to-end bounds, computed from the rows, never typed.
 struct PathBudget {
   Budget dequeue_to_submitted{Nanos{0}, Nanos{0}};  ///< the sum of match, mapper, paint and render
-  Budget dequeue_to_scan_out{Nanos{0}, Nanos{0}};  ///< one panel period more
+  Budget dequeue_to_scan_out{Nanos{0}, Nanos{0}};   ///< one panel period more
   Budget pedal_to_acknowledged{60ms, 100ms};
   Budget pedal_to_painted{150ms, 250ms};
   Budget capture_durable{500ms, 2s};
