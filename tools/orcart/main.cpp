@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
   orcart::add_bench(app, exit_code);
   orcart::add_decode(app, exit_code);
   orcart::add_emulate(app, exit_code);
+  orcart::add_paint(app, exit_code);
   orcart::add_surface(app, exit_code);
   CLI11_PARSE(app, argc, argv);
   return exit_code;

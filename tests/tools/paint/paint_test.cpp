@@ -1,0 +1,200 @@
+// `orcart paint` from files to files: what comes out, what is said, and that nothing is left after an error.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "firmware-host/files/picture_file.hpp"
+#include "firmware-host/files/scope_file.hpp"
+#include "firmware-host/files/surface_file.hpp"
+#include "tests/firmware-host/files/temporary_folder.hpp"
+#include "tests/render/support/scenes.hpp"
+#include "tools/orcart/verbs.hpp"
+
+namespace orcart {
+namespace {
+
+struct Said {
+  int exit_code = 0;
+  std::string out, err;
+};
+
+/// A folder with a square plate 20 mm in front of a scope, a picture, and views.csv of one view.
+class Paint : public ::testing::Test {
+ protected:
+  static constexpr const char* kView = "ramp.png,1,0,0,0,0,1,0,0,0,0,1,0\n";
+  static constexpr const char* kFacingAway = "ramp.png,-1,0,0,0,0,1,0,0,0,0,-1,40\n";
+
+  void SetUp() override {
+    Surface plane = *make_surface(scenes::plane(20, 20, 8).mesh, "plane");
+    ASSERT_TRUE(write_ply(folder_ / "surface.ply", plane));
+    ASSERT_TRUE(write_scope(folder_ / "scope.toml", scope_));
+    auto ramp = scenes::ramp(scope_);
+    ASSERT_TRUE(write_png(folder_ / "ramp.png", ramp.width_px, ramp.height_px, ramp.bytes));
+    folder_.write("views.csv", kView);
+    files_ = folder_.count();
+  }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  Said run(const std::string& out, const std::vector<std::string>& more = {}) const {
+    Said said;
+    CLI::App app;
+    add_paint(app, said.exit_code);
+    std::vector<std::string> words = {"paint",           "--surface",        path("surface.ply"),
+                                      "--scope",         path("scope.toml"), "--views",
+                                      path("views.csv"), "--texel-mm",       "0.4",
+                                      "--out",           path(out)};
+    words.insert(words.end(), more.begin(), more.end());
+    std::reverse(words.begin(), words.end());
+    ::testing::internal::CaptureStdout();
+    ::testing::internal::CaptureStderr();
+    try {
+      app.parse(words);
+    } catch (const CLI::ParseError& error) {
+      said.exit_code = app.exit(error);
+    }
+    said.out = ::testing::internal::GetCapturedStdout();
+    said.err = ::testing::internal::GetCapturedStderr();
+    return said;
+  }
+
+  /// Runs and expects a refusal that says `words` and leaves nothing behind.
+  void expect_refused(const std::string& words, const std::vector<std::string>& more = {}) const {
+    const Said said = run("painted.obj", more);
+    EXPECT_NE(said.exit_code, 0);
+    EXPECT_EQ(said.out, "");
+    EXPECT_NE(said.err.find(words), std::string::npos) << said.err;
+    EXPECT_FALSE(std::filesystem::exists(path("painted.obj")));
+    EXPECT_FALSE(std::filesystem::exists(path("painted.png")));
+  }
+
+  ScopeModel scope_ = scenes::scope();
+  TemporaryFolder folder_;
+  std::size_t files_ = 0;
+};
+
+/// Corners of an OBJ as viewers see them: position and the colour of its place in the picture.
+struct Corner {
+  Eigen::Vector3d position_mm;
+  Eigen::Vector2d texels;  ///< from the top left corner of the picture
+};
+
+std::vector<Corner> corners_of(const std::filesystem::path& obj, const Picture& picture) {
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<Eigen::Vector2d> places;
+  std::vector<Corner> corners;
+  std::ifstream in(obj);
+  for (std::string line; std::getline(in, line);) {
+    std::istringstream words(line);
+    std::string kind;
+    words >> kind;
+    double x = 0, y = 0, z = 0;
+    if (kind == "v" && words >> x >> y >> z) positions.emplace_back(x, y, z);
+    if (kind == "vt" && words >> x >> y)
+      places.emplace_back(x * picture.width_px, (1 - y) * picture.height_px);
+    std::size_t vertex = 0, place = 0;
+    char slash = 0;
+    while (kind == "f" && words >> vertex >> slash >> place)
+      corners.push_back({positions.at(vertex - 1), places.at(place - 1)});
+  }
+  return corners;
+}
+
+TEST_F(Paint, PutsEachPixelWhereAViewerWillLookForIt) {
+  const Said said = run("painted.obj");
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.out.find("1 views painted"), std::string::npos) << said.out;
+  EXPECT_EQ(folder_.count(), files_ + 3);
+  const auto picture = read_picture(path("painted.png"));
+  ASSERT_TRUE(picture) << picture.error().message;
+  const auto corners = corners_of(path("painted.obj"), *picture);
+  ASSERT_EQ(corners.size(), 3U * 128);
+  for (const Corner& corner : corners) {
+    if (corner.position_mm.head<2>().cwiseAbs().maxCoeff() > 9) continue;  // a silhouette: grey beside it
+    const auto pixel = project(scope_.lens, corner.position_mm);
+    ASSERT_TRUE(pixel);
+    const auto at = static_cast<std::size_t>(std::floor(corner.texels.y())) *
+                        static_cast<std::size_t>(picture->width_px) +
+                    static_cast<std::size_t>(std::floor(corner.texels.x()));
+    EXPECT_NEAR(picture->rgba[4 * at], 255 * pixel->x() / 639, 3);
+    EXPECT_NEAR(picture->rgba[4 * at + 1], 255 * pixel->y() / 479, 3);
+  }
+}
+
+TEST_F(Paint, WritesPly) {
+  const Said said = run("painted.ply", {"--json"});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(folder_.count(), files_ + 2);
+  const auto surface = read_surface(path("painted.ply"));
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_EQ(surface->mesh.triangles.size(), 128U);
+  EXPECT_EQ(said.out.find("{\"views\": 1, \"views_without_paint\": 0, \"coverage\": 1.0"), 0U) << said.out;
+  EXPECT_EQ(std::count(said.out.begin(), said.out.end(), '\n'), 1);
+}
+
+TEST_F(Paint, PaperModePaintsToo) {
+  EXPECT_EQ(run("painted.obj", {"--mode", "paper"}).exit_code, 0);
+}
+
+TEST_F(Paint, WarnsOfAViewThatPaintedNothing) {
+  folder_.write("views.csv", std::string(kView) + kFacingAway);
+  const Said said = run("painted.obj");
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_NE(said.err.find("ramp.png painted nothing"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("--seen-from inside"), std::string::npos);
+}
+
+TEST_F(Paint, RefusesWhereNoViewPaints) {
+  expect_refused("none of the 1 views painted anything", {"--seen-from", "inside"});
+  expect_refused("try --seen-from outside", {"--seen-from", "inside"});
+}
+
+TEST_F(Paint, TellsWhichPoseWasMended) {
+  folder_.write("views.csv", "ramp.png,1.004,0,0,0,0,1,0,0,0,0,1,0\n");
+  const Said said = run("painted.obj");
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_NE(said.err.find("views.csv:1: the pose differs by 0.008 from a rotation and was made one"),
+            std::string::npos);
+}
+
+TEST_F(Paint, RefusesPosesThatAreNoRotation) {
+  folder_.write("views.csv", "ramp.png,1.1,0,0,0,0,1,0,0,0,0,1,0\n");
+  expect_refused("views.csv:1: the pose differs by");
+}
+
+TEST_F(Paint, RefusesAPictureOfAnotherSizeEvenAfterGoodOnes) {
+  ASSERT_TRUE(write_png(folder_ / "small.png", 1, 1, std::vector<std::uint8_t>(4)));
+  folder_.write("views.csv", std::string(kView) + "small.png,1,0,0,0,0,1,0,0,0,0,1,0\n");
+  expect_refused("small.png: the picture is 1x1 pixels, the scope's calibration is for 640x480");
+}
+
+TEST_F(Paint, NamesTheFileThatIsMissing) {
+  folder_.write("views.csv", "gone.png,1,0,0,0,0,1,0,0,0,0,1,0\n");
+  expect_refused("gone.png");
+  for (const char* name : {"views.csv", "scope.toml", "surface.ply"}) {
+    std::filesystem::remove(folder_ / name);
+    expect_refused(name);
+  }
+}
+
+TEST_F(Paint, ASurfaceThatStatesNoSpaceNeedsToBeTold) {
+  folder_.write(
+      "surface.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "-4 -4 20\n0 4 20\n4 -4 20\n3 0 1 2\n");
+  expect_refused("--space");
+  EXPECT_EQ(run("painted.obj", {"--space", "lps"}).exit_code, 0);
+  EXPECT_EQ(run("painted.obj", {"--space", "RAS"}).exit_code, 0);
+}
+
+TEST_F(Paint, RefusesFormatsItCannotWrite) {
+  const Said said = run("painted.glb");
+  EXPECT_NE(said.exit_code, 0);
+  EXPECT_NE(said.err.find(".obj or .ply"), std::string::npos) << said.err;
+}
+
+}  // namespace
+}  // namespace orcart

@@ -1,0 +1,262 @@
+// orcart paint: recorded pictures with their poses, painted onto a surface, from files to files.
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware-host/files/picture_file.hpp"
+#include "firmware-host/files/scope_file.hpp"
+#include "firmware-host/files/surface_file.hpp"
+#include "firmware-host/files/textured_file.hpp"
+#include "firmware-host/files/views_file.hpp"
+#include "firmware-host/offline/offline_painter.hpp"
+#include "tools/orcart/verbs.hpp"
+
+namespace orcart {
+namespace {
+
+constexpr const char* kExample =
+    "Example:\n"
+    "  orcart paint --surface ventricle.ply --seen-from inside --scope scope.toml --views views.csv --out "
+    "painted.obj\n\n"
+    "views.csv has a line for each picture, the newest last (it wins): image,m00,m01,...,m23 with the "
+    "camera's pose\n"
+    "in the surface's space as a row-major 3x4 matrix, mm (LPS). Writes NAME.obj, NAME.mtl and NAME.png, or "
+    "NAME.ply\n"
+    "and NAME.png.";
+
+struct Arguments {
+  std::string surface, scope, views, out;
+  OfflinePaintOptions options;
+  std::optional<Space> space;
+  bool json = false;
+};
+
+struct Summary {
+  std::size_t views = 0, views_without_paint = 0;
+  double coverage = 0;  ///< share of the surface's texels that carry paint, 0..1
+  double texel_mm = 0;
+  int atlas_size_texels = 0;
+  double seconds = 0;
+  std::string renderer;
+};
+
+void warn(const std::string& sentence) {
+  std::fprintf(stderr, "orcart paint: %s\n", sentence.c_str());
+}
+
+void warn(const std::vector<std::string>& sentences) {
+  for (const std::string& sentence : sentences) warn(sentence);
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// A bar on a terminal's stderr, once the work has taken two seconds.
+class ProgressBar {
+ public:
+  explicit ProgressBar(std::size_t steps) : steps_(steps) {}
+  ~ProgressBar() { clear(); }
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  void show(std::size_t done) {
+    if (!terminal_ || seconds_since(start_) < 2) return;
+    constexpr std::size_t kWidth = 40;
+    const std::string bar(done * kWidth / steps_, '#');
+    std::fprintf(stderr, "\r[%-40s] %zu of %zu views", bar.c_str(), done, steps_);
+    shown_ = true;
+  }
+  /// Makes room for a sentence.
+  void clear() {
+    if (std::exchange(shown_, false)) std::fputs("\r\x1b[K", stderr);
+  }
+
+ private:
+  std::size_t steps_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  bool terminal_ = ::isatty(STDERR_FILENO) == 1, shown_ = false;
+};
+
+/// What is read before any painting starts.
+struct Inputs {
+  Surface surface;
+  ScopeModel scope;
+  std::vector<View> views;
+};
+
+Result<Surface> read_surface_of(const Arguments& arguments) {
+  SurfaceNotes notes;
+  auto surface = read_surface(arguments.surface, &notes, arguments.space);
+  if (!surface && !arguments.space && read_surface(arguments.surface, nullptr, Space::lps))
+    return fail(surface.error().message + " with --space lps or --space ras");
+  warn(notes.sentences);
+  return surface;
+}
+
+Result<Inputs> read_inputs(const Arguments& arguments) {
+  auto surface = read_surface_of(arguments);
+  if (!surface) return tl::unexpected(surface.error());
+  std::vector<std::string> scope_notes;
+  auto scope = read_scope(arguments.scope, &scope_notes);
+  if (!scope) return tl::unexpected(scope.error());
+  warn(scope_notes);
+  auto views = read_views(arguments.views);
+  if (!views) return tl::unexpected(views.error());
+  warn(views->notes);
+  return Inputs{std::move(*surface), std::move(*scope), std::move(views->views)};
+}
+
+/// How many views painted nothing.
+Result<std::size_t> paint_views(OfflinePainter& painter, const Inputs& inputs, const Arguments& arguments) {
+  const char* other_side = arguments.options.seen_from == SeenFrom::inside ? "outside" : "inside";
+  std::size_t without_paint = 0;
+  ProgressBar bar(inputs.views.size());
+  for (std::size_t i = 0; i < inputs.views.size(); ++i) {
+    const View& view = inputs.views[i];
+    bar.show(i);
+    auto picture = read_picture(view.image);
+    if (!picture) return tl::unexpected(picture.error());
+    const auto painted = painter.paint(picture->descriptor(), view.X_MC);
+    if (!painted) return fail(view.image.string() + ": " + painted.error().message);
+    if (painted->triangles > 0) continue;
+    ++without_paint;
+    bar.clear();
+    warn(view.image.string() + " painted nothing: no triangle within " +
+         std::to_string(static_cast<int>(inputs.scope.far_mm)) +
+         " mm faces the scope there; check the pose, or try --seen-from " + other_side);
+  }
+  return without_paint;
+}
+
+/// Texels, row 0 on top, to places with their origin bottom left.
+std::vector<std::array<Eigen::Vector2f, 3>> picture_places(const AtlasLayout& layout) {
+  auto places = layout.corners_texels;
+  for (auto& corners : places)
+    for (Eigen::Vector2f& corner : corners)
+      corner = {corner.x() / static_cast<float>(layout.width_texels),
+                1 - corner.y() / static_cast<float>(layout.height_texels)};
+  return places;
+}
+
+double share_painted(const AtlasLayout& layout, const AtlasPicture& picture) {
+  std::size_t inside = 0, painted = 0;
+  for (std::size_t i = 0; i < layout.inside.size(); ++i) {
+    if (layout.inside[i] == 0) continue;
+    ++inside;
+    painted += picture.rgba[4 * i + 3] > 0 ? 1 : 0;
+  }
+  return inside > 0 ? static_cast<double>(painted) / static_cast<double>(inside) : 0;
+}
+
+Result<Summary> paint(const Arguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto inputs = read_inputs(arguments);
+  if (!inputs) return tl::unexpected(inputs.error());
+  auto painter = OfflinePainter::create(inputs->surface, inputs->scope, arguments.options);
+  if (!painter) return tl::unexpected(painter.error());
+  const auto without_paint = paint_views(*painter, *inputs, arguments);
+  if (!without_paint) return tl::unexpected(without_paint.error());
+  const AtlasLayout& layout = painter->layout();
+  const AtlasPicture picture = painter->painter().read_back();
+  const double coverage = share_painted(layout, picture);
+  if (coverage == 0)
+    return fail(arguments.out + " is not written: none of the " + std::to_string(inputs->views.size()) +
+                " views painted anything");
+  const auto places = picture_places(layout);
+  const auto written = write_textured(arguments.out, {.surface = inputs->surface,
+                                                      .corners_uv = places,
+                                                      .width_texels = picture.width_texels,
+                                                      .height_texels = picture.height_texels,
+                                                      .rgba = picture.rgba});
+  if (!written) return tl::unexpected(written.error());
+  return Summary{.views = inputs->views.size(),
+                 .views_without_paint = *without_paint,
+                 .coverage = coverage,
+                 .texel_mm = layout.texel_mm,
+                 .atlas_size_texels = layout.width_texels,
+                 .seconds = seconds_since(start),
+                 .renderer = painter->context().renderer_name()};
+}
+
+void print(const Summary& summary, const Arguments& arguments) {
+  std::printf(
+      "%zu views painted in %.1f s (%s), %.1f %% of the surface covered, texels of %.3g mm in %dx%d: %s\n",
+      summary.views - summary.views_without_paint, summary.seconds, summary.renderer.c_str(),
+      100 * summary.coverage, summary.texel_mm, summary.atlas_size_texels, summary.atlas_size_texels,
+      arguments.out.c_str());
+}
+
+std::string json_text(const std::string& words) {
+  std::string out = "\"";
+  for (const char c : words) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  }
+  return out + "\"";
+}
+
+void print_json(const Summary& summary, const Arguments& arguments) {
+  std::printf(
+      "{\"views\": %zu, \"views_without_paint\": %zu, \"coverage\": %.6f, \"texel_mm\": %.6g, "
+      "\"atlas_size_texels\": %d, \"seconds\": %.3f, \"renderer\": %s, \"out\": %s}\n",
+      summary.views, summary.views_without_paint, summary.coverage, summary.texel_mm,
+      summary.atlas_size_texels, summary.seconds, json_text(summary.renderer).c_str(),
+      json_text(arguments.out).c_str());
+}
+
+int run(const Arguments& arguments) {
+  const auto summary = paint(arguments);
+  if (!summary) {
+    warn(summary.error().message);
+    return 1;
+  }
+  arguments.json ? print_json(*summary, arguments) : print(*summary, arguments);
+  return 0;
+}
+
+std::string writable_kind(const std::string& out) {
+  return out.ends_with(".obj") || out.ends_with(".ply") ? "" : "a name that ends in .obj or .ply is accepted";
+}
+
+}  // namespace
+
+void add_paint(CLI::App& app, int& exit_code) {
+  CLI::App* verb = app.add_subcommand("paint", "Paint recorded pictures with known poses onto a surface");
+  verb->footer(kExample);
+  const auto arguments = std::make_shared<Arguments>();
+  verb->add_option("--surface", arguments->surface, "PLY, STL or OBJ, mm")->required();
+  verb->add_option("--scope", arguments->scope, "scope.toml, the calibration passport")->required();
+  verb->add_option("--views", arguments->views, "views.csv")->required();
+  verb->add_option("--mode", arguments->options.mode,
+                   "perspective (default): through the calibrated lens; paper: as Dey et al. 2000")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, TextureMode>{
+          {"perspective", TextureMode::perspective}, {"paper", TextureMode::paper}}));
+  verb->add_option("--seen-from", arguments->options.seen_from, "outside (default) or inside")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, SeenFrom>{{"outside", SeenFrom::outside}, {"inside", SeenFrom::inside}}));
+  verb->add_option("--texel-mm", arguments->options.texel_mm,
+                   "size of the paint's texels; made coarser where the surface would not fit")
+      ->check(CLI::Range(0.01, 10.0))
+      ->capture_default_str();
+  verb->add_option_function<Space>(
+          "--space", [arguments](const Space& space) { arguments->space = space; },
+          "lps or ras: the space of a surface that states none")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Space>{{"lps", Space::lps}, {"ras", Space::ras}}, CLI::ignore_case));
+  verb->add_option("--out", arguments->out, "NAME.obj or NAME.ply")
+      ->required()
+      ->check(CLI::Validator(writable_kind, "NAME.obj|NAME.ply"));
+  verb->add_flag("--json", arguments->json, "the summary as one JSON object");
+  verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace orcart
