@@ -1,4 +1,5 @@
-// The tracker's seam: bytes to and from a position sensor over USB serial, tty, TCP, a recording or a simulator.
+// The tracker's seam: bytes to and from a position sensor over USB serial, tty, TCP, a recording or a
+// simulator.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +35,8 @@ class ByteLink : public WakeSource {
   virtual Result<void, PortFault> set_line(const LineSettings& line) noexcept = 0;
   /// A serial break: resets an NDI device.
   virtual Result<void, PortFault> send_break() noexcept = 0;
-  /// After `disconnected`: tries to open the same device again. May take long; never called while painting goes on.
+  /// After `disconnected`: tries to open the same device again. May take long; never called while painting
+  /// goes on.
   virtual Result<void, PortFault> reopen() noexcept = 0;
 };
 

@@ -19,11 +19,11 @@ struct FrameFormat {
 
 /// One filled buffer, on loan until give_back(index).
 struct FrameBuffer {
-  std::uint32_t index = 0;      ///< names the buffer, 0 .. buffer_count-1
+  std::uint32_t index = 0;  ///< names the buffer, 0 .. buffer_count-1
   ImageDescriptor image;
-  std::uint32_t sequence = 0;   ///< counted by the driver; a gap is a lost frame
-  Instant stamp{};              ///< the driver's stamp; what it means is configuration (StampMeaning)
-  Nanos exposure{};             ///< length of the exposure where the driver tells it, else zero
+  std::uint32_t sequence = 0;  ///< counted by the driver; a gap is a lost frame
+  Instant stamp{};             ///< the driver's stamp; what it means is configuration (StampMeaning)
+  Nanos exposure{};            ///< length of the exposure where the driver tells it, else zero
 };
 
 /// One thread calls take() and wait(); give_back() may come from the same thread only.

@@ -13,9 +13,9 @@ enum class EdgeKind : std::uint8_t { pressed, released };
 
 /// One edge of the pedal's line, polarity already applied.
 struct PedalEdge {
-  Instant at{};                 ///< the kernel's stamp
+  Instant at{};  ///< the kernel's stamp
   EdgeKind kind = EdgeKind::pressed;
-  std::uint32_t sequence = 0;   ///< counted per line; a gap is a lost edge
+  std::uint32_t sequence = 0;  ///< counted per line; a gap is a lost edge
 };
 
 /// One thread calls.

@@ -29,8 +29,8 @@ class Panel {
   virtual PanelMode mode() const noexcept = 0;
   /// A free buffer to draw into, the same one until it is presented; nothing_yet while all are in use.
   virtual Result<ImageDescriptor, PortFault> acquire() noexcept = 0;
-  /// Hands the acquired buffer over for the next vblank after `now`; returns its serial. busy while another picture
-  /// waits for its flip: the buffer stays acquired, and what was drawn is kept.
+  /// Hands the acquired buffer over for the next vblank after `now`; returns its serial. busy while another
+  /// picture waits for its flip: the buffer stays acquired, and what was drawn is kept.
   virtual Result<std::uint64_t, PortFault> present(Instant now) noexcept = 0;
   /// The oldest flip not yet taken.
   virtual std::optional<Flip> take_flip(Instant now) noexcept = 0;

@@ -1,4 +1,5 @@
-// The truth that a simulated tracker measures: where each tool really is at an instant, and whether it can be seen.
+// The truth that a simulated tracker measures: where each tool really is at an instant, and whether it can be
+// seen.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -77,7 +77,8 @@ StepReport PanelStage::step(Instant now) noexcept {
   ++presented_;
   ++since_counted_;
   if (now >= count_due_) {
-    screen_state_.status.rendered_hz = static_cast<float>(static_cast<double>(since_counted_) / seconds(1s + (now - count_due_)));
+    screen_state_.status.rendered_hz =
+        static_cast<float>(static_cast<double>(since_counted_) / seconds(1s + (now - count_due_)));
     since_counted_ = 0;
     count_due_ = now + 1s;
   }
@@ -156,13 +157,10 @@ void PanelStage::choose_notice(Instant now) noexcept {
   screen_state_.status.notice.level = Notice::Level::none;
   if (status.video == Freshness::lost)
     return notice(Notice::Level::alarm, "NO LIVE VIDEO: check the camera's cable");
-  if (status.tracker == Freshness::lost)
-    return notice(Notice::Level::alarm, "TRACKER LOST: check its cable");
-  if (!status.tool_seen)
-    return notice(Notice::Level::warning, "TOOL NOT SEEN: clear its line of sight");
+  if (status.tracker == Freshness::lost) return notice(Notice::Level::alarm, "TRACKER LOST: check its cable");
+  if (!status.tool_seen) return notice(Notice::Level::warning, "TOOL NOT SEEN: clear its line of sight");
   if (!status.reference_seen)
-    return notice(Notice::Level::warning,
-                  "REFERENCE NOT SEEN: clear its line of sight");
+    return notice(Notice::Level::warning, "REFERENCE NOT SEEN: clear its line of sight");
   if (camera_.frozen) return notice(Notice::Level::warning, "VIDEO FROZEN? The picture repeats");
   if (paint.failed_at != Instant{} && now - paint.failed_at < kNoticeTime)
     return notice(Notice::Level::warning, words_for(paint.last_refusal));

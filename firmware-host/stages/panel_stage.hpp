@@ -78,7 +78,7 @@ class PanelStage final : public Stage {
   std::uint32_t last_acknowledged_ = 0;
   Instant acknowledged_scan_out_{};
   std::uint64_t presented_ = 0;
-  Instant count_due_{};           ///< of the pictures a second
+  Instant count_due_{};  ///< of the pictures a second
   std::uint32_t since_counted_ = 0;
   Instant coverage_due_{};
   std::atomic<double> coverage_{0};

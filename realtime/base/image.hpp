@@ -1,4 +1,5 @@
-// The one image descriptor that board and render both know: CPU planes or dma-bufs, never copied, never owned.
+// The one image descriptor that board and render both know: CPU planes or dma-bufs, never copied, never
+// owned.
 #pragma once
 
 #include <array>
@@ -8,11 +9,12 @@
 namespace orcart {
 
 constexpr std::uint32_t fourcc(char a, char b, char c, char d) {
-  return static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b) << 8 | static_cast<std::uint32_t>(c) << 16 |
-         static_cast<std::uint32_t>(d) << 24;
+  return static_cast<std::uint32_t>(a) | static_cast<std::uint32_t>(b) << 8 |
+         static_cast<std::uint32_t>(c) << 16 | static_cast<std::uint32_t>(d) << 24;
 }
 
-/// Pixel formats by their V4L2/DRM four-character code. YUV is BT.601, limited range, chroma sited left (MPEG-2).
+/// Pixel formats by their V4L2/DRM four-character code. YUV is BT.601, limited range, chroma sited left
+/// (MPEG-2).
 enum class PixelFormat : std::uint32_t {
   none = 0,
   yuyv = fourcc('Y', 'U', 'Y', 'V'),      ///< packed 4:2:2, one plane
@@ -46,12 +48,17 @@ constexpr std::size_t packed_bytes(PixelFormat format, int width_px, int height_
   const std::size_t pixels = static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
   switch (format) {
     case PixelFormat::yuyv:
-    case PixelFormat::uyvy: return pixels * 2;
-    case PixelFormat::nv12: return pixels * 3 / 2;
+    case PixelFormat::uyvy:
+      return pixels * 2;
+    case PixelFormat::nv12:
+      return pixels * 3 / 2;
     case PixelFormat::rgba8888:
-    case PixelFormat::xrgb8888: return pixels * 4;
-    case PixelFormat::gray8: return pixels;
-    case PixelFormat::none: break;
+    case PixelFormat::xrgb8888:
+      return pixels * 4;
+    case PixelFormat::gray8:
+      return pixels;
+    case PixelFormat::none:
+      break;
   }
   return 0;
 }
@@ -66,7 +73,8 @@ constexpr ImageDescriptor packed_image(std::byte* data, PixelFormat format, int 
   if (format == PixelFormat::yuyv || format == PixelFormat::uyvy) stride = width * 2;
   if (format == PixelFormat::rgba8888 || format == PixelFormat::xrgb8888) stride = width * 4;
   image.planes[0] = {.data = data, .stride_bytes = stride};
-  if (format == PixelFormat::nv12) image.planes[1] = {.data = data, .offset_bytes = luma_bytes, .stride_bytes = width};
+  if (format == PixelFormat::nv12)
+    image.planes[1] = {.data = data, .offset_bytes = luma_bytes, .stride_bytes = width};
   return image;
 }
 

@@ -129,7 +129,8 @@ RealtimeRights lock_process_memory() {
         memory_lack("RLIMIT_MEMLOCK is " + std::to_string(limit.rlim_cur / 1024) + " KiB"));
     return rights;
   }
-  // On fault: what was touched before arming stays; the GL driver's compiler, 100 MB of it, is not dragged in.
+  // On fault: what was touched before arming stays; the GL driver's compiler, 100 MB of it, is not dragged
+  // in.
   if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) {
     rights.lacks.push_back(memory_lack(reason(errno)));
     return rights;

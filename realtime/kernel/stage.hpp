@@ -21,8 +21,8 @@ class Stage {
  public:
   virtual ~Stage() = default;
   virtual std::string_view name() const noexcept = 0;
-  /// On the thread that will step, before the first step and after the last: for what belongs to a thread, such as a
-  /// GL context. A SimulatedRunner calls neither: all its stages live on the caller's thread.
+  /// On the thread that will step, before the first step and after the last: for what belongs to a thread,
+  /// such as a GL context. A SimulatedRunner calls neither: all its stages live on the caller's thread.
   virtual void enter_thread() noexcept {}
   virtual void leave_thread() noexcept {}
   /// Does what is due at `now`. Allocates nothing, locks nothing, waits for nothing.
