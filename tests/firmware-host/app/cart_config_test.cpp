@@ -1,0 +1,81 @@
+// cart.toml: the shipped one loads, and what is wrong is told all at once, each with its line.
+#include "firmware-host/app/cart_config.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/firmware-host/app/demo_cart.hpp"
+#include "tests/firmware-host/files/temporary_folder.hpp"
+
+namespace orcart::testing {
+namespace {
+
+/// The complaint about a cart of this text; empty where it is accepted.
+std::string complaint(const std::string& text) {
+  const TemporaryFolder folder;
+  const auto config = read_cart(folder.write("cart.toml", text));
+  return config ? std::string{} : config.error().message;
+}
+
+/// ":N:", the line of the first occurrence of `what` in a text.
+std::string line_of(const std::string& text, const std::string& what) {
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(text.find(what));
+  return ":" + std::to_string(1 + std::count(text.begin(), end, '\n')) + ":";
+}
+
+bool tells(const std::string& complaint, const std::string& what) {
+  return complaint.find(what) != std::string::npos;
+}
+
+TEST(CartConfig, ReadsTheShippedDemo) {
+  const auto config = read_cart(demo_cart());
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_EQ(config->tracker.rate_hz, 60);
+  EXPECT_EQ(config->camera.width_px, 640);
+  EXPECT_EQ(config->seen_from, SeenFrom::inside);
+  EXPECT_EQ(config->mode, TextureMode::perspective);
+  EXPECT_TRUE(config->simulated());
+  for (const auto& file : {config->surface, config->scope, config->registration, config->tracker.scope_rom,
+                           config->tracker.reference_rom})
+    EXPECT_TRUE(std::filesystem::exists(file)) << file;
+}
+
+TEST(CartConfig, TellsEveryErrorAtOnceWithItsLine) {
+  std::string text = text_of(demo_cart());
+  text = replaced(text, "rate_hz = 60", "rate_hz = 4000");
+  text = replaced(text, "width_px = 640", "width_px = \"wide\"");
+  text = replaced(text, "mode = \"perspective\"", "mode = \"cubist\"");
+  text = replaced(text, "seed = 1", "sead = 1");
+  ASSERT_FALSE(text.empty());
+  const std::string told = complaint(text);
+  for (const char* wrong : {"rate_hz = 4000", "width_px = \"wide\"", "mode = \"cubist\"", "sead = 1"})
+    EXPECT_TRUE(tells(told, line_of(text, wrong))) << wrong << " in:\n" << told;
+  EXPECT_TRUE(tells(told, "4000")) << told;
+  EXPECT_TRUE(tells(told, "cubist")) << told;
+  EXPECT_TRUE(tells(told, "sead")) << told;
+}
+
+TEST(CartConfig, RefusesAnExposureLongerThanThePeriod) {
+  const std::string told = complaint(replaced(text_of(demo_cart()), "exposure_ms = 8", "exposure_ms = 40"));
+  EXPECT_TRUE(tells(told, "exposure_ms")) << told;
+  EXPECT_TRUE(tells(told, "33.3")) << told;
+}
+
+TEST(CartConfig, RefusesAnEmptyFileForWhatItLacks) {
+  const std::string told = complaint("");
+  for (const char* needed : {"surface", "scope", "registration", "tracker", "camera"})
+    EXPECT_TRUE(tells(told, needed)) << needed << " in:\n" << told;
+}
+
+TEST(CartConfig, RefusesWhatIsNoToml) {
+  EXPECT_NE(complaint("[tracker\nkind = simulated"), "");
+  EXPECT_NE(complaint(std::string("\0\xff\xfe garbage", 11)), "");
+}
+
+TEST(CartConfig, NamesTheFileThatIsMissing) {
+  const auto config = read_cart("/nowhere/cart.toml");
+  ASSERT_FALSE(config);
+  EXPECT_TRUE(tells(config.error().message, "/nowhere/cart.toml"));
+}
+
+}  // namespace
+}  // namespace orcart::testing

@@ -1,0 +1,65 @@
+// Files that do not belong together are refused before anything is armed.
+#include "firmware-host/app/patient.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/firmware-host/app/demo_cart.hpp"
+#include "tests/firmware-host/files/temporary_folder.hpp"
+
+namespace orcart::testing {
+namespace {
+
+CartConfig demo() {
+  auto config = read_cart(demo_cart()).value();
+  config.texel_mm = 1;  // quick
+  return config;
+}
+
+TEST(Patient, OfTheShippedDemoIsWhole) {
+  const auto patient = read_patient(demo());
+  ASSERT_TRUE(patient) << patient.error().message;
+  EXPECT_TRUE(patient->surface.closed);
+  EXPECT_EQ(patient->registration.surface_hash, patient->surface.identity.hash);
+  EXPECT_FALSE(patient->layout.owners.empty());
+}
+
+TEST(Patient, RefusesARegistrationOfAnotherSurface) {
+  const TemporaryFolder folder;
+  CartConfig config = demo();
+  const std::string text = text_of(config.registration);
+  const std::string other = "0123456789abcdef0123456789abcdef";
+  const std::string hash = read_patient(config).value().surface.identity.hash;
+  config.registration = folder.write("other.toml", replaced(text, hash, other));
+  const auto patient = read_patient(config);
+  ASSERT_FALSE(patient);
+  for (const std::string& named : {other, hash, config.registration.string(), config.surface.string()})
+    EXPECT_NE(patient.error().message.find(named), std::string::npos) << patient.error().message;
+}
+
+TEST(Patient, RefusesAPassportOfAnotherPictureSize) {
+  CartConfig config = demo();
+  config.camera.width_px = 1280;
+  config.camera.height_px = 720;
+  const auto patient = read_patient(config);
+  ASSERT_FALSE(patient);
+  EXPECT_NE(patient.error().message.find("640x480"), std::string::npos) << patient.error().message;
+  EXPECT_NE(patient.error().message.find("1280x720"), std::string::npos) << patient.error().message;
+}
+
+TEST(Patient, RefusesToLookFromInsideAnOpenSurface) {
+  const TemporaryFolder folder;
+  CartConfig config = demo();
+  config.surface =
+      folder.write("open.ply",
+                   "ply\nformat ascii 1.0\ncomment SPACE=LPS\nelement vertex 3\nproperty float x\n"
+                   "property float y\nproperty float z\nelement face 1\n"
+                   "property list uchar int vertex_indices\nend_header\n"
+                   "0 0 0\n10 0 0\n0 10 0\n3 0 1 2\n");
+  const auto patient = read_patient(config);
+  ASSERT_FALSE(patient);
+  EXPECT_NE(patient.error().message.find("open"), std::string::npos) << patient.error().message;
+  EXPECT_NE(patient.error().message.find("inside"), std::string::npos) << patient.error().message;
+}
+
+}  // namespace
+}  // namespace orcart::testing

@@ -1,0 +1,97 @@
+// Buffers go out as frames, come home by their lane, and what is wrong with the camera is told.
+#include "firmware-host/stages/camera_stage.hpp"
+
+#include <deque>
+
+#include <gtest/gtest.h>
+
+#include "tests/firmware-host/stages/stage_lanes.hpp"
+
+namespace orcart::testing {
+namespace {
+
+/// Gives what it was told to give, and remembers what came back.
+class ScriptedCamera final : public FrameSource {
+ public:
+  void wait(Instant) noexcept override {}
+  Instant next_event() const noexcept override { return Instant::max(); }
+  FrameFormat format() const noexcept override { return {}; }
+  std::uint32_t buffer_count() const noexcept override { return 8; }
+  Result<void, PortFault> start() noexcept override { return {}; }
+  void stop() noexcept override {}
+  Result<FrameBuffer, PortFault> take() noexcept override {
+    if (script.empty()) return tl::unexpected(PortFault::nothing_yet);
+    auto next = script.front();
+    script.pop_front();
+    return next;
+  }
+  void give_back(std::uint32_t index) noexcept override { home.push_back(index); }
+
+  std::deque<Result<FrameBuffer, PortFault>> script;
+  std::vector<std::uint32_t> home;
+};
+
+class CameraStageTest : public ::testing::Test {
+ protected:
+  FrameBuffer buffer(std::uint32_t index) const {
+    return {.index = index, .sequence = index, .stamp = clock.now() - 6ms + Nanos{index}, .exposure = 8ms};
+  }
+  CameraNews step() {
+    (void)stage.step(clock.now());
+    return stage.news();
+  }
+
+  SimulatedClock clock;
+  ScriptedCamera camera;
+  Lanes lanes{small_lanes()};
+  CameraStage stage{camera, clock, {.meaning = StampMeaning::end_of_exposure, .exposure = 8ms}, lanes};
+};
+
+TEST_F(CameraStageTest, HandsOnAFrameWithItsExposure) {
+  camera.script = {buffer(3)};
+  (void)step();
+  const auto frames = all_of(lanes.frames);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].buffer, 3u);
+  EXPECT_EQ(frames[0].exposure_end, clock.now() - 6ms + 3ns);
+  EXPECT_EQ(frames[0].exposure_start, frames[0].exposure_end - 8ms);
+  EXPECT_EQ(frames[0].dequeued_at, clock.now());
+}
+
+TEST_F(CameraStageTest, GivesBackWhatCameHomeBeforeItTakes) {
+  ASSERT_TRUE(lanes.frames_home.try_push(5));
+  ASSERT_TRUE(lanes.frames_home.try_push(2));
+  (void)step();
+  EXPECT_EQ(camera.home, (std::vector<std::uint32_t>{5, 2}));
+}
+
+TEST_F(CameraStageTest, GivesAFrameBackThatNobodyTakes) {
+  Lanes narrow{{.poses = 4, .pedal = 4, .frames = 1, .orders = 4, .patches = 1}};
+  CameraStage crowded(camera, clock, {.meaning = StampMeaning::end_of_exposure, .exposure = 8ms}, narrow);
+  std::uint32_t index = 0;
+  for (; camera.home.empty() && index < 64; ++index) {
+    camera.script = {buffer(index % 8)};
+    (void)crowded.step(clock.now());
+  }
+  EXPECT_EQ(camera.home.size(), 1u);
+  EXPECT_EQ(all_of(narrow.frames).size(), index - 1);
+  EXPECT_EQ(narrow.frames.dropped(), 1u);
+}
+
+TEST_F(CameraStageTest, CountsADamagedFrameAndGoesOnToTheNext) {
+  camera.script = {tl::unexpected(PortFault::damaged), buffer(1)};
+  EXPECT_EQ(step().damaged, 1u);
+  EXPECT_EQ(all_of(lanes.frames).size(), 1u);
+}
+
+TEST_F(CameraStageTest, TellsThatTheCameraIsGoneUntilAFrameComes) {
+  EXPECT_TRUE(step().connected);
+  camera.script = {tl::unexpected(PortFault::disconnected)};
+  EXPECT_FALSE(step().connected);
+  EXPECT_FALSE(step().connected);
+  camera.script = {buffer(0)};
+  EXPECT_TRUE(step().connected);
+}
+
+}  // namespace
+}  // namespace orcart::testing

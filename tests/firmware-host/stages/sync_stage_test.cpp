@@ -1,0 +1,87 @@
+// Every frame is shown at once; only the one a press means is painted; every other is let go, exactly once.
+#include "firmware-host/stages/sync_stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/firmware-host/stages/stage_lanes.hpp"
+#include "tests/realtime/sync/sync_samples.hpp"
+
+namespace orcart::testing {
+namespace {
+
+class SyncStageTest : public ::testing::Test {
+ protected:
+  /// Poses every 16 ms over a second, arriving 10 ms after they were measured; a frame every 33 ms.
+  void run(double until_ms, double hidden_from_ms = 1e9) {
+    for (; now_ms_ < until_ms; now_ms_ += 1) {
+      const int ms = static_cast<int>(now_ms_);
+      if (ms >= 10 && (ms - 10) % 16 == 0) {
+        const double measured = now_ms_ - 10;
+        (void)lanes.poses.try_push(measured < hidden_from_ms ? sample_at(at_ms(measured))
+                                                             : unseen_at(at_ms(measured)));
+      }
+      if (ms >= 39 && (ms - 39) % 33 == 0)
+        (void)lanes.frames.try_push(frame_at(at_ms(now_ms_ - 6), frames_++));
+      (void)stage.step(at_ms(now_ms_));
+      for (const PaintOrder& order : all_of(lanes.orders)) orders.push_back(order);
+      for (const Selection& one : all_of(lanes.selected)) selected.push_back(one);
+    }
+  }
+  void press(double at) {
+    (void)lanes.pedal.try_push({.kind = PedalEventKind::capture, .unit = ++unit_, .at = at_ms(at)});
+  }
+  auto count(PaintOrderKind kind) const { return std::ranges::count(orders, kind, &PaintOrder::kind); }
+
+  Lanes lanes{small_lanes()};
+  SyncStage stage{{.history = {.period = 16ms}, .matcher = {}, .selector = {}, .X_MR = {}, .X_SC = {}},
+                  lanes};
+  std::vector<PaintOrder> orders;
+  std::vector<Selection> selected;
+
+ private:
+  double now_ms_ = 0;
+  std::uint32_t frames_ = 0, unit_ = 0;
+};
+
+TEST_F(SyncStageTest, ShowsAndReleasesEveryFrameThatNobodyWants) {
+  run(600);
+  EXPECT_EQ(count(PaintOrderKind::show), 17);  // dequeued at 39, 72, ... 567
+  EXPECT_GE(count(PaintOrderKind::release), 15);
+  EXPECT_TRUE(selected.empty());
+}
+
+TEST_F(SyncStageTest, AcknowledgesAPressAndSelectsTheFirstFrameFromItsEdgeOn) {
+  run(100);
+  press(100);
+  run(300);
+  EXPECT_EQ(count(PaintOrderKind::acknowledge), 1);
+  ASSERT_EQ(selected.size(), 1u);
+  EXPECT_EQ(selected[0].matched.frame.mid_exposure(), at_ms(132));  // 33, 66, 99, 132
+  EXPECT_EQ(selected[0].request.edge_at, at_ms(100));
+  EXPECT_EQ(count(PaintOrderKind::fail), 0);
+  EXPECT_EQ(count(PaintOrderKind::show), count(PaintOrderKind::release) + 1);
+}
+
+TEST_F(SyncStageTest, FailsAPressWhileTheToolIsHiddenWithThatReason) {
+  run(150, 100);
+  press(150);
+  run(500, 100);
+  EXPECT_TRUE(selected.empty());
+  ASSERT_EQ(count(PaintOrderKind::fail), 1);
+  const auto failed = std::ranges::find(orders, PaintOrderKind::fail, &PaintOrder::kind);
+  EXPECT_EQ(failed->refusal, Refusal::tool_unseen);
+  EXPECT_EQ(failed->request.edge_at, at_ms(150));
+}
+
+TEST_F(SyncStageTest, TellsWhereTheScopeIsNow) {
+  run(200);
+  ScopeNow scope;
+  ASSERT_TRUE(lanes.scope_now.take(scope));
+  EXPECT_EQ(scope.pose.kind, PoseKind::predicted);
+  EXPECT_NEAR(scope.X_MC.translation_mm.x(), x_mm_at(at_ms(199)), 1e-6);
+}
+
+}  // namespace
+}  // namespace orcart::testing
