@@ -80,6 +80,7 @@ KeptSession::~KeptSession() {
 Result<void> KeptSession::finish(const std::array<StageLedger, kStageCount>& ledgers) {
   finished_ = true;
   std::vector<SessionBudget> budgets;
+  budgets.reserve(ledgers.size());
   for (const StageLedger& ledger : ledgers) budgets.push_back(kept_budget(ledger));
   return writer_.write_budgets(budgets);
 }

@@ -302,7 +302,7 @@ std::string summary_of(const RunReport& r, const std::filesystem::path& dir) {
                   p.judged_ms);
   }
   if (!r.degraded.empty()) out += text("DEGRADED: %zu reasons, in the report.\n", r.degraded.size());
-  out += "Report: " + (dir / "report.html").string() + "\n";
+  if (!dir.empty()) out += "Report: " + (dir / "report.html").string() + "\n";
   return out;
 }
 
