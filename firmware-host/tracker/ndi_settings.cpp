@@ -43,9 +43,13 @@ std::string unfit_sentence(const NdiSettings& settings) {
 
 std::size_t poll_exchange_bytes(std::size_t tools) noexcept {
   constexpr std::size_t kCommand = 12;
+  return kCommand + poll_reply_bytes(tools);
+}
+
+std::size_t poll_reply_bytes(std::size_t tools) noexcept {
   constexpr std::size_t kEnvelope = 6 + 1 + 2 + 2;  // header, count, system status, CRC
   constexpr std::size_t kTool = 2 + 8 * 4 + 4 + 4;
-  return kCommand + kEnvelope + tools * kTool;
+  return kEnvelope + tools * kTool;
 }
 
 bool rate_fits(std::size_t tools, double rate_hz, std::uint32_t baud) noexcept {

@@ -24,6 +24,8 @@ struct NdiSettings {
 
 /// Bytes of one poll and its reply, when all tools are seen.
 std::size_t poll_exchange_bytes(std::size_t tools) noexcept;
+/// Those of the reply alone.
+std::size_t poll_reply_bytes(std::size_t tools) noexcept;
 
 /// Whether polls of so many tools at that rate leave a tenth of each period free at the baud.
 bool rate_fits(std::size_t tools, double rate_hz, std::uint32_t baud) noexcept;
