@@ -1,0 +1,98 @@
+// The demo's files, made smaller.
+#include "tests/path/cart_rig.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+namespace orcart::testing {
+namespace {
+
+std::filesystem::path folder_of(const char* variable) {
+  const char* folder = std::getenv(variable);
+  return folder != nullptr ? folder : std::filesystem::current_path();
+}
+
+}  // namespace
+
+RigWish presses() {
+  return {.duration_s = 5.4,
+          .script = {.press_every_s = 1.6, .undo_at = 0.4, .stream_at = -1, .hide_at = 0.8},
+          .more_presses = {4950ms}};
+}
+
+RigWish stream() {
+  return {.duration_s = 4.8,
+          .script = {.press_every_s = 1.6, .undo_at = -1, .stream_at = 0.5, .hide_at = -1},
+          .more_presses = {4350ms, 4580ms}};
+}
+
+std::unique_ptr<CartRig> CartRig::create(const RigWish& wish) {
+  auto rig = std::make_unique<CartRig>();
+  auto config = read_cart(folder_of("ORCART_SOURCE_DIR") / "share/carts/demo.toml");
+  if (!config) {
+    ADD_FAILURE() << config.error().message;
+    return nullptr;
+  }
+  rig->config = std::move(*config);
+  rig->config.texel_mm = wish.texel_mm;
+  rig->config.panel = {.width_px = 640, .height_px = 480, .refresh_hz = 20};
+  rig->config.camera.rate_hz = wish.camera_hz;
+  rig->config.simulation.duration_s = wish.duration_s;
+  rig->config.simulation.marker_noise_mm = 0;
+  rig->config.simulation.picture_noise = false;
+  rig->config.simulation.movie = folder_of("ORCART_BINARY_DIR") / "movies-of-tests";
+  auto patient = read_patient(rig->config);
+  if (!patient) {
+    ADD_FAILURE() << patient.error().message;
+    return nullptr;
+  }
+  rig->patient = std::move(*patient);
+  auto devices = SimulatedDevices::create({.config = rig->config,
+                                           .patient = rig->patient,
+                                           .clock = rig->clock,
+                                           .pictures = 1,
+                                           .drawing = {},
+                                           .script = wish.script,
+                                           .camera_faults = wish.camera_faults,
+                                           .more_presses = wish.more_presses});
+  if (!devices) {
+    ADD_FAILURE() << devices.error().message;
+    return nullptr;
+  }
+  rig->devices = std::move(*devices);
+  return rig;
+}
+
+bool CartRig::arm(SessionStage* session) {
+  const Ports ports = devices->ports();
+  camera = std::make_unique<LentFrames>(ports.camera);
+  auto made = Cart::create(
+      {.config = config,
+       .patient = patient,
+       .ports = {.tracker = ports.tracker, .camera = *camera, .pedal = ports.pedal, .panel = ports.panel},
+       .clock = clock,
+       .session = session,
+       .longest_run_s = 20});
+  if (!made) {
+    ADD_FAILURE() << made.error().message;
+    return false;
+  }
+  cart = std::move(*made);
+  return true;
+}
+
+void CartRig::run_until(Nanos since_start) {
+  cart->run_simulated(clock, at(since_start));
+}
+
+Nanos CartRig::until(Instant from, const std::function<bool(const Status&)>& holds) {
+  while (clock.now() < devices->end()) {
+    cart->run_simulated(clock, clock.now() + 5ms);
+    if (holds(cart->status())) return clock.now() - from;
+  }
+  return Nanos::max();
+}
+
+}  // namespace orcart::testing

@@ -1,0 +1,58 @@
+// A whole simulated cart in the shipped ventricle, small enough to run in seconds.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "firmware-host/app/cart.hpp"
+#include "firmware-host/app/simulated_devices.hpp"
+#include "tests/path/lent_frames.hpp"
+
+namespace orcart::testing {
+
+/// What a test wants to be different from the demo.
+struct RigWish {
+  double duration_s = 5;
+  double camera_hz = 10;
+  double texel_mm = 0.4;
+  ProcedureScript script{};
+  std::vector<CameraFaultPeriod> camera_faults{};
+  std::vector<Nanos> more_presses{};
+};
+
+/// Three places: a press that is taken back by the double press at the second, a press at the third, one
+/// while the tracker does not see the scope.
+RigWish presses();
+/// Two places: a press, then a stream that a double press takes back as a whole.
+RigWish stream();
+
+/// demo.toml without noise, with a small panel and coarse texels. Movies are kept in the build folder.
+class CartRig {
+ public:
+  /// Fails the test and returns nothing where the cart cannot be made.
+  static std::unique_ptr<CartRig> create(const RigWish& wish);
+
+  /// Makes the cart: after faults were told to the devices.
+  [[nodiscard]] bool arm(SessionStage* session = nullptr);
+  /// Runs until `since_start` of the procedure.
+  void run_until(Nanos since_start);
+  /// Runs until the panel has shown the last.
+  void run_to_end() { run_until(devices->end() - devices->start() + 500ms); }
+  /// Steps of 5 ms from where it stands until `holds` or the end; how long that took since `from`,
+  /// Nanos::max() where it never did.
+  Nanos until(Instant from, const std::function<bool(const Status&)>& holds);
+
+  Instant at(Nanos since_start) const { return devices->start() + since_start; }
+  /// The atlas as it is.
+  std::vector<std::uint8_t> painting() { return cart->painter().read_back().rgba; }
+
+  CartConfig config;
+  Patient patient;
+  SimulatedClock clock;
+  std::unique_ptr<SimulatedDevices> devices;
+  std::unique_ptr<LentFrames> camera;
+  std::unique_ptr<Cart> cart;
+};
+
+}  // namespace orcart::testing

@@ -1,0 +1,41 @@
+// A camera port that counts its loans: what is out must come home.
+#pragma once
+
+#include <set>
+
+#include "board/ports/frame_source.hpp"
+
+namespace orcart::testing {
+
+/// Hands everything on to the camera behind it. Same thread rules.
+class LentFrames final : public FrameSource {
+ public:
+  explicit LentFrames(FrameSource& camera) : camera_(camera) {}
+
+  void wait(Instant deadline) noexcept override { camera_.wait(deadline); }
+  Instant next_event() const noexcept override { return camera_.next_event(); }
+  FrameFormat format() const noexcept override { return camera_.format(); }
+  std::uint32_t buffer_count() const noexcept override { return camera_.buffer_count(); }
+  Result<void, PortFault> start() noexcept override { return camera_.start(); }
+  void stop() noexcept override { camera_.stop(); }
+  Result<FrameBuffer, PortFault> take() noexcept override {
+    auto buffer = camera_.take();
+    if (buffer) lent_twice_ += out_.insert(buffer->index).second ? 0 : 1;
+    return buffer;
+  }
+  void give_back(std::uint32_t index) noexcept override {
+    returned_twice_ += out_.erase(index) == 1 ? 0 : 1;
+    camera_.give_back(index);
+  }
+
+  std::size_t out() const { return out_.size(); }
+  int lent_twice() const { return lent_twice_; }
+  int returned_twice() const { return returned_twice_; }
+
+ private:
+  FrameSource& camera_;
+  std::set<std::uint32_t> out_;
+  int lent_twice_ = 0, returned_twice_ = 0;
+};
+
+}  // namespace orcart::testing
