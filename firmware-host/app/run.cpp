@@ -92,7 +92,7 @@ std::vector<JudgedView> views_of(const Cart& cart, const SimulatedWorld& world, 
 }
 
 Result<void> judge_painting(RunReport& report, const Patient& patient, const CartConfig& config,
-                            std::vector<JudgedView> views, Progress& progress) {
+                            const std::vector<JudgedView>& views, Progress& progress) {
   struct Case {
     std::string name;
     TextureMode mode;
