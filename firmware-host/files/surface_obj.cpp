@@ -29,8 +29,8 @@ Result<ParsedSurface> parse_obj(std::span<const std::byte> bytes, const std::str
     TextCursor words(line);
     const std::string_view key = words.word();
     const auto wrong = [&](const std::string& expected) {
-      return fail(name + ":" + std::to_string(lines.line_number()) + ": \"" +
-                  std::string(line.substr(0, 60)) + "\"; " + expected);
+      std::string sentence = name + ":" + std::to_string(lines.line_number()) + ": \"";
+      return fail(sentence.append(line.substr(0, 60)).append("\"; ").append(expected));
     };
     if (key.starts_with('#')) take_comment(line.substr(line.find('#') + 1), surface);
     if (key == "v") {

@@ -62,13 +62,13 @@ class PlyParser {
   }
 
   static bool skip_property(const PlyProperty& property, PlyBody& body) {
-    double count = 1;
+    std::uint64_t count = 1;
     if (property.count_type) {
       const auto said = body.next(*property.count_type);
       if (!said || !(*said >= 0) || *said > static_cast<double>(body.left())) return false;
-      count = *said;
+      count = static_cast<std::uint64_t>(*said);
     }
-    for (double i = 0; i < count; ++i)
+    for (std::uint64_t i = 0; i < count; ++i)
       if (!body.next(property.type)) return false;
     return true;
   }
@@ -82,11 +82,12 @@ class PlyParser {
 
   Result<void> read_vertices(const PlyElement& element, PlyBody& body) {
     std::vector<int> axis_of;
-    int axes = 0;
+    unsigned axes = 0;
     for (const PlyProperty& property : element.properties) {
       const int axis = property.count_type || property.name.size() != 1 ? -1 : property.name[0] - 'x';
-      axis_of.push_back(axis >= 0 && axis < 3 ? axis : -1);
-      if (axis_of.back() >= 0) axes |= 1 << axis;
+      const bool known = axis >= 0 && axis < 3;
+      axis_of.push_back(known ? axis : -1);
+      if (known) axes |= 1U << static_cast<unsigned>(axis);
     }
     if (axes != 7) return fail(name_ + ": its vertices lack x, y or z; all three are expected");
     surface_.mesh.vertices_mm.reserve(element.count);

@@ -47,10 +47,10 @@ class TomlSection {
   std::int64_t integer(std::string_view key, IntegerRange range = {}) const;
   bool flag(std::string_view key, std::optional<bool> fallback = std::nullopt) const;
   /// A non-empty string.
-  std::string text(std::string_view key, std::optional<std::string> fallback = std::nullopt) const;
+  std::string text(std::string_view key, const std::optional<std::string>& fallback = std::nullopt) const;
   /// A file's path; a relative one is taken from the TOML file's folder, the fallback too unless empty.
   std::filesystem::path path(std::string_view key,
-                             std::optional<std::filesystem::path> fallback = std::nullopt) const;
+                             const std::optional<std::filesystem::path>& fallback = std::nullopt) const;
   /// One of the words; choice_of() below gives an enumeration.
   std::string choice(std::string_view key, std::span<const std::string_view> words,
                      std::optional<std::string_view> fallback = std::nullopt) const;
@@ -65,9 +65,9 @@ class TomlSection {
 
   /// Exactly `count` finite numbers; with count 0 any number of them.
   std::vector<double> numbers(std::string_view key, std::size_t count,
-                              std::optional<std::vector<double>> fallback = std::nullopt) const;
-  std::vector<std::string> texts(std::string_view key,
-                                 std::optional<std::vector<std::string>> fallback = std::nullopt) const;
+                              const std::optional<std::vector<double>>& fallback = std::nullopt) const;
+  std::vector<std::string> texts(
+      std::string_view key, const std::optional<std::vector<std::string>>& fallback = std::nullopt) const;
   /// A row-major 3x4 matrix: 12 numbers, or 16 whose last row is 0 0 0 1, flat or in rows.
   /// For poses see pose_from_toml() in toml_pose.hpp.
   std::array<double, 12> matrix_3x4(std::string_view key,

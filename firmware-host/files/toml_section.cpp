@@ -104,7 +104,7 @@ bool TomlSection::flag(std::string_view key, std::optional<bool> fallback) const
   return fallback.value_or(false);
 }
 
-std::string TomlSection::text(std::string_view key, std::optional<std::string> fallback) const {
+std::string TomlSection::text(std::string_view key, const std::optional<std::string>& fallback) const {
   const Value found = value(key, !fallback);
   if (found.node == nullptr) return fallback.value_or("");
   if (const auto* text = found.node->as_string(); text != nullptr && !text->get().empty()) return text->get();
@@ -113,7 +113,7 @@ std::string TomlSection::text(std::string_view key, std::optional<std::string> f
 }
 
 std::filesystem::path TomlSection::path(std::string_view key,
-                                        std::optional<std::filesystem::path> fallback) const {
+                                        const std::optional<std::filesystem::path>& fallback) const {
   const auto otherwise = fallback ? std::optional(fallback->string()) : std::nullopt;
   const std::filesystem::path given = text(key, otherwise);
   return given.empty() || given.is_absolute() ? given : reader_->state_->folder / given;
@@ -146,7 +146,7 @@ std::optional<std::vector<double>> TomlSection::flat_numbers(std::string_view ke
 }
 
 std::vector<double> TomlSection::numbers(std::string_view key, std::size_t count,
-                                         std::optional<std::vector<double>> fallback) const {
+                                         const std::optional<std::vector<double>>& fallback) const {
   const std::string accepted =
       count == 0 ? "a list of numbers" : "a list of " + std::to_string(count) + " numbers";
   auto numbers = flat_numbers(key, !fallback, accepted);
@@ -157,7 +157,7 @@ std::vector<double> TomlSection::numbers(std::string_view key, std::size_t count
 }
 
 std::vector<std::string> TomlSection::texts(std::string_view key,
-                                            std::optional<std::vector<std::string>> fallback) const {
+                                            const std::optional<std::vector<std::string>>& fallback) const {
   const Value found = value(key, !fallback);
   if (found.node == nullptr) return fallback.value_or(std::vector<std::string>{});
   std::vector<std::string> texts;
