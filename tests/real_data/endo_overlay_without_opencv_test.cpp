@@ -2,5 +2,6 @@
 #include <gtest/gtest.h>
 
 TEST(EndoOverlay, CornersLieAtTheirMillimetresInThePainting) {
-  GTEST_SKIP() << "OpenCV (libopencv-dev), which finds the corners in the painting, was not there at build time";
+  GTEST_SKIP()
+      << "OpenCV (libopencv-dev), which finds the corners in the painting, was not there at build time";
 }

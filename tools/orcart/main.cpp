@@ -2,8 +2,9 @@
 #include "tools/orcart/verbs.hpp"
 
 int main(int argc, char** argv) {
-  CLI::App app{"orcart: paint what an endoscope sees onto the surface from the patient's CT or MR.\n"
-               "Research use only; not a medical device."};
+  CLI::App app{
+      "orcart: paint what an endoscope sees onto the surface from the patient's CT or MR.\n"
+      "Research use only; not a medical device."};
   app.require_subcommand(1);
   app.set_version_flag("--version", ORCART_VERSION);
   int exit_code = 0;

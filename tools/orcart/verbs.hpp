@@ -1,4 +1,5 @@
-// The verbs of `orcart`: each adds its own subcommand with options, help and an example, and says how it ended.
+// The verbs of `orcart`: each adds its own subcommand with options, help and an example, and says how it
+// ended.
 #pragma once
 
 #include <CLI/CLI.hpp>
