@@ -49,6 +49,7 @@ Picture contact_sheet(const std::vector<Picture>& pictures, const SheetLayout& l
   Picture sheet;
   if (pictures.empty()) return sheet;
   std::vector<Picture> thumbs;
+  thumbs.reserve(pictures.size());
   for (const Picture& p : pictures) thumbs.push_back(shrunk(p, layout.thumb_width_px));
 
   const auto columns =
