@@ -22,7 +22,8 @@ inline float doubled_area(const FlatTriangle& t) {
 inline float edge_distance(const FlatTriangle& t, const Eigen::Vector2f& p) {
   float nearest = INFINITY;
   for (int e = 0; e < 3; ++e) {
-    const Eigen::Vector2f a = t[static_cast<std::size_t>(e)], b = t[static_cast<std::size_t>((e + 1) % 3)];
+    const Eigen::Vector2f& a = t[static_cast<std::size_t>(e)];
+    const Eigen::Vector2f& b = t[static_cast<std::size_t>((e + 1) % 3)];
     const Eigen::Vector2f ab = b - a;
     const float length2 = ab.squaredNorm();
     const float s = length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0f, 1.0f) : 0.0f;
