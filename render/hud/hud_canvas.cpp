@@ -37,10 +37,12 @@ Result<void> HudCanvas::prepare() {
   vertices_ = gles::make_vertex_array();
   glBindVertexArray(vertices_.id());
   buffer_ = gles::make_buffer(GL_ARRAY_BUFFER, kCapacity * sizeof(Quad), nullptr, GL_STREAM_DRAW);
+  glBindVertexBuffer(0, buffer_.id(), 0, sizeof(Quad));
+  glVertexBindingDivisor(0, 1);
   const auto attribute = [](GLuint index, GLenum type, GLboolean normalised, std::size_t offset) {
     glEnableVertexAttribArray(index);
-    glVertexAttribPointer(index, 4, type, normalised, sizeof(Quad), reinterpret_cast<const void*>(offset));
-    glVertexAttribDivisor(index, 1);
+    glVertexAttribFormat(index, 4, type, normalised, static_cast<GLuint>(offset));
+    glVertexAttribBinding(index, 0);
   };
   attribute(0, GL_FLOAT, GL_FALSE, offsetof(Quad, rect));
   attribute(1, GL_FLOAT, GL_FALSE, offsetof(Quad, detail));

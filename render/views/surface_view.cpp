@@ -99,10 +99,11 @@ void SurfaceView::load(const Surface& surface, const AtlasLayout& layout) {
       gles::make_buffer(GL_ARRAY_BUFFER, vertices.size() * sizeof(Vertex), vertices.data(), GL_STATIC_DRAW);
   const std::array<std::pair<GLint, std::size_t>, 3> fields{
       {{3, offsetof(Vertex, position)}, {3, offsetof(Vertex, normal)}, {2, offsetof(Vertex, texel)}}};
+  glBindVertexBuffer(0, vertices_.id(), 0, sizeof(Vertex));
   for (GLuint i = 0; i < fields.size(); ++i) {
     glEnableVertexAttribArray(i);
-    glVertexAttribPointer(i, fields[i].first, GL_FLOAT, GL_FALSE, sizeof(Vertex),
-                          reinterpret_cast<const void*>(fields[i].second));
+    glVertexAttribFormat(i, fields[i].first, GL_FLOAT, GL_FALSE, static_cast<GLuint>(fields[i].second));
+    glVertexAttribBinding(i, 0);
   }
   indices_ = gles::make_buffer(GL_ELEMENT_ARRAY_BUFFER, indices.size() * sizeof(std::uint32_t),
                                indices.data(), GL_STATIC_DRAW);
