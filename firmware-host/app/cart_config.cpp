@@ -21,8 +21,7 @@ void read_files(TomlReader& reader, CartConfig& config) {
 }
 
 void read_tracker(const TomlSection& section, TrackerConfig& tracker) {
-  tracker.kind = section.choice("kind", {"simulated", "tty", "tcp"});
-  if (tracker.kind != "simulated") tracker.device = section.text("device");
+  tracker.kind = section.choice("kind", {"simulated"});
   tracker.rate_hz = section.number("rate_hz", {.min = 20, .max = 400, .fallback = 60});
   tracker.baud = static_cast<std::uint32_t>(
       section.integer("baud", {.min = 9600, .max = 1'228'739, .fallback = 115'200}));

@@ -16,8 +16,7 @@
 namespace orcart {
 
 struct TrackerConfig {
-  std::string kind = "simulated";  ///< simulated | tty | tcp
-  std::string device;              ///< tty: its path; tcp: host:port
+  std::string kind = "simulated";
   double rate_hz = 60;
   std::uint32_t baud = 115200;
   double latency_ms = 0;  ///< from the device frame to its reply being ready, taken off every stamp
@@ -26,7 +25,6 @@ struct TrackerConfig {
 
 struct CameraConfig {
   std::string kind = "simulated";
-  std::string device;
   int width_px = 640, height_px = 480;
   PixelFormat format = PixelFormat::yuyv;
   double rate_hz = 30;
