@@ -21,16 +21,17 @@ vec3 unpacked_normal(float packed_normal) {
   return normalize(n);
 }
 
-// What the scope sees along the line of sight of one depth texel against the texel's own plane: mm in front of it
-// (positive) or behind it. Both depths are reciprocal: there they are linear in what the texture holds and in the slopes.
-float nearer_mm(vec2 slope, vec3 plane, float farthest_own) {
+// What the scope sees along the line of sight of one depth texel, mm in front of the texel's own plane and mm behind it.
+// In front counts from no farther than `farthest_own`, behind from the plane itself: a steep plane is no edge. Depths are
+// reciprocal: there they are linear in what the texture holds and in the slopes.
+vec2 before_and_behind_mm(vec2 slope, vec3 plane, float farthest_own) {
   float size = float(textureSize(u_depth, 0).x);
   ivec2 at = ivec2((slope / u_depth_tangent * 0.5 + 0.5) * size);
   vec2 centre = ((vec2(at) + 0.5) / size * 2.0 - 1.0) * u_depth_tangent;
-  float own = max(dot(plane, vec3(centre, 1.0)), farthest_own);
+  float own = max(dot(plane, vec3(centre, 1.0)), 1e-6);
   float d = texelFetch(u_depth, at, 0).r;
   float seen = (u_depth_far - d * (u_depth_far - u_depth_near)) / (u_depth_near * u_depth_far);
-  return 1.0 / own - 1.0 / seen;
+  return vec2(1.0 / max(own, farthest_own) - 1.0 / seen, 1.0 / seen - 1.0 / own);
 }
 
 // Hidden when something nearer is seen along this line. An edge within reach of the picture's own blur, nearer or farther,
@@ -38,13 +39,13 @@ float nearer_mm(vec2 slope, vec3 plane, float farthest_own) {
 bool hidden(vec3 p, vec3 normal) {
   vec2 slope = p.xy / p.z;
   vec3 plane = normal / dot(normal, p);  // dot(plane, ray) is the reciprocal depth of the plane along a ray of depth 1
-  if (nearer_mm(slope, plane, 0.0) > 0.04 + 0.002 * p.z) return true;
+  if (before_and_behind_mm(slope, plane, 0.0).x > 0.04 + 0.002 * p.z) return true;
   float reach = 1.5 * u_pixel_rad * (1.0 + dot(slope, slope));  // a barrel's pixels grow towards its edge
   float margin = 0.25 + 0.015 * p.z;
   float farthest_own = 1.0 / (p.z + margin);
   vec2 step_by = vec2(reach, 0.0);
   for (int i = 0; i < 8; ++i) {
-    if (abs(nearer_mm(slope + step_by, plane, farthest_own)) > margin) return true;
+    if (any(greaterThan(before_and_behind_mm(slope + step_by, plane, farthest_own), vec2(margin)))) return true;
     step_by = 0.70710678 * vec2(step_by.x - step_by.y, step_by.x + step_by.y);
   }
   return false;
