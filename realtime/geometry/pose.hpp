@@ -14,9 +14,6 @@ struct Pose {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();    ///< R_AB; columns are B's axes seen from A
   Eigen::Vector3d translation_mm = Eigen::Vector3d::Zero();  ///< B's origin, in A
 
-  /// Copying numbers never throws, though Eigen does not say so; channels between threads want it said.
-  Pose& operator=(const Pose&) noexcept = default;
-
   Pose<B, A> inverse() const {
     return {.rotation = rotation.transpose(), .translation_mm = -(rotation.transpose() * translation_mm)};
   }

@@ -13,7 +13,10 @@ namespace orcart {
 /// hands in one exchange. One writer thread calls post, one reader thread calls take.
 template <class T, template <class> class Atomic = std::atomic>
 class LatestMailbox {
-  static_assert(std::is_nothrow_copy_assignable_v<T>, "values are copied inside noexcept code");
+  // Not is_nothrow_copy_assignable: Eigen does not say of its fixed-size matrices that copying them cannot
+  // throw.
+  static_assert(std::is_copy_assignable_v<T>,
+                "values are copied inside noexcept code: copying must not throw");
 
  public:
   /// Writer. Replaces what was not taken yet.

@@ -15,7 +15,10 @@ namespace orcart {
 /// `Atomic` is std::atomic in the product and a model checker's twin in its tests.
 template <class T, template <class> class Atomic = std::atomic>
 class SpscQueue {
-  static_assert(std::is_nothrow_copy_assignable_v<T>, "elements are copied inside noexcept code");
+  // Not is_nothrow_copy_assignable: Eigen does not say of its fixed-size matrices that copying them cannot
+  // throw.
+  static_assert(std::is_copy_assignable_v<T>,
+                "elements are copied inside noexcept code: copying must not throw");
 
  public:
   /// Takes the memory for `capacity` elements, once. A queue of capacity 0 refuses every push.

@@ -29,6 +29,7 @@ TEST(DurationFrom, RefusesWhatIsNoLengthOfTimeAndSaysWhatWouldBe) {
 tl::expected<Options, int> options_of(std::vector<std::string> words) {
   words.insert(words.begin(), "orcartd");
   std::vector<char*> argv;
+  argv.reserve(words.size());
   for (std::string& word : words) argv.push_back(word.data());
   ::testing::internal::CaptureStderr();
   ::testing::internal::CaptureStdout();

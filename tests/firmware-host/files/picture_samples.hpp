@@ -37,6 +37,7 @@ inline std::string png_of(const PngKind& kind, int width,
   const png_color palette[] = {{255, 0, 0}, {0, 255, 0}};
   if (kind.color_type == PNG_COLOR_TYPE_PALETTE) png_set_PLTE(png, info, palette, 2);
   std::vector<png_bytep> pointers;
+  pointers.reserve(rows.size());
   for (const auto& row : rows) pointers.push_back(const_cast<png_bytep>(row.data()));
   png_set_rows(png, info, pointers.data());
   png_write_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
