@@ -29,14 +29,13 @@ class BakedTissue {
 
  private:
   using Sample = std::array<std::uint8_t, 4>;  ///< square roots of red, green, blue, gloss; 255 is 1
-  struct Grid;
-  const Grid& grid_of(std::uint32_t triangle) const;
-  std::unique_ptr<Grid> bake(std::uint32_t triangle) const;
+  const Sample* samples_of(std::uint32_t triangle) const;
+  std::unique_ptr<Sample[]> bake(std::uint32_t triangle) const;
 
   const TriangleMesh& mesh_;
   LivingTissue tissue_;
-  float texel_mm_;
-  mutable std::vector<std::atomic<Grid*>> grids_;
+  std::vector<std::uint16_t> steps_;  ///< per triangle: samples along an edge, less one
+  mutable std::vector<std::atomic<const Sample*>> samples_;  ///< per triangle, null until first seen
 };
 
 }  // namespace orcart

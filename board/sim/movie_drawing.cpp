@@ -11,8 +11,8 @@
 namespace orcart {
 namespace {
 
-constexpr int kFewestBlurSamples = 3, kMostBlurSamples = 9;
-constexpr double kBlurStep_mm = 0.035;   ///< of the tip's way between two samples of one exposure
+constexpr int kFewestBlurSamples = 3, kMostBlurSamples = 5;
+constexpr double kBlurStep_mm = 0.06;    ///< of the tip's way between two samples of one exposure
 constexpr double kGainEvery_s = 0.1;     ///< how often the automatic exposure looks
 constexpr double kGainSettles_s = 0.45;  ///< its time constant
 constexpr Nanos kProgressEvery = 200ms;
