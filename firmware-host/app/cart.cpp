@@ -349,7 +349,9 @@ CartFigures Cart::figures() const {
 }
 
 Cart::Now Cart::now() const {
-  return {.frames = state_->frames.size(), .captures = state_->captures.size()};
+  return {.coverage = state_->showing ? state_->showing->coverage() : 0,
+          .frames = state_->frames.size(),
+          .captures = state_->captures.size()};
 }
 
 }  // namespace orcart

@@ -216,6 +216,7 @@ RunReport figures_of(Cart& cart, const RunFacts& facts) {
     r.stages.push_back(distribution_of(std::string(row.name),
                                        "thread " + std::string(spec_of(row.thread).name), ledger.budget(),
                                        ledger.wall()));
+    r.stages.back().over_bound = ledger.over_bound();
   }
   for (std::size_t i = 0; i < cart.thread_ledgers().size(); ++i) {
     r.wake_ups.push_back(distribution_of(std::string(kThreads[i].spec.name), "awake minus due", {},

@@ -111,9 +111,10 @@ std::string cards(const std::vector<Distribution>& list) {
       continue;
     }
     out += svg_histogram(d);
-    out += text("<div class=muted>%llu samples; p50 %.3f ms, p%g %.3f ms, max %.3f ms",
-                static_cast<unsigned long long>(d.samples), d.p50_ms, 100 * d.judged_quantile, d.judged_ms,
-                d.max_ms);
+    out += text("<div class=muted>%llu samples; p50 %.3f ms", static_cast<unsigned long long>(d.samples),
+                d.p50_ms);
+    if (d.judged_quantile > 0.5) out += text(", p%g %.3f ms", 100 * d.judged_quantile, d.judged_ms);
+    out += text(", max %.3f ms", d.max_ms);
     if (d.budget_ms > 0) {
       out += text("; budget %.2f ms: <span class=%s>%s</span>; over the bound of %.2f ms: %llu", d.budget_ms,
                   d.within_budget() ? "ok" : "bad", d.within_budget() ? "held" : "missed", d.bound_ms,
@@ -124,17 +125,30 @@ std::string cards(const std::vector<Distribution>& list) {
   return out + "</div>";
 }
 
+bool is_of_stream(const CaptureRow& c) {
+  return c.outcome.ends_with("(stream)");
+}
+
+/// A row a capture; the pictures of one stream share a row.
 std::string captures_table(const std::vector<CaptureRow>& captures) {
   std::string out =
       "<table><tr><th>unit</th><th>pressed at</th><th>outcome</th><th>acknowledged after</th><th>painted on "
       "panel "
       "after</th><th>pose</th><th>nearest sample</th></tr>";
   const auto ms = [](double v) { return v < 0 ? std::string("&ndash;") : text("%.1f ms", v); };
-  for (const auto& c : captures) {
+  for (std::size_t i = 0; i < captures.size(); ++i) {
+    const CaptureRow& c = captures[i];
+    const std::size_t first = i;
+    while (is_of_stream(c) && i + 1 < captures.size() && captures[i + 1].unit == c.unit &&
+           captures[i + 1].outcome == c.outcome) {
+      ++i;
+    }
+    const std::string more = i > first ? text(", %zu pictures", i - first + 1) : "";
     out += text("<tr><td>%u</td><td>%.2f s</td><td class=%s>", c.unit, c.edge_s,
                 c.outcome.starts_with("refused") ? "bad" : "ok") +
-           escaped(c.outcome) + "</td><td>" + ms(c.to_acknowledged_ms) + "</td><td>" + ms(c.to_painted_ms) +
-           "</td><td>" + escaped(c.pose) + "</td><td>" + ms(c.pose_distance_ms) + "</td></tr>";
+           escaped(c.outcome) + more + "</td><td>" + ms(c.to_acknowledged_ms) + "</td><td>" +
+           ms(c.to_painted_ms) + "</td><td>" + escaped(c.pose) + "</td><td>" + ms(c.pose_distance_ms) +
+           "</td></tr>";
   }
   return out + "</table>";
 }
@@ -297,9 +311,10 @@ std::string summary_of(const RunReport& r, const std::filesystem::path& dir) {
               late_percent(r), static_cast<unsigned long long>(r.frames_late),
               static_cast<unsigned long long>(r.frames_shown), r.resident_mb, r.render_class.c_str());
   for (const auto& p : r.paths) {
-    if (p.samples > 0)
-      out += text("%s: p50 %.1f ms, p%g %.1f ms.\n", p.name.c_str(), p.p50_ms, 100 * p.judged_quantile,
-                  p.judged_ms);
+    if (p.samples == 0) continue;
+    out += text("%s: p50 %.1f ms", p.name.c_str(), p.p50_ms);
+    if (p.judged_quantile > 0.5) out += text(", p%g %.1f ms", 100 * p.judged_quantile, p.judged_ms);
+    out += text(" of %llu.\n", static_cast<unsigned long long>(p.samples));
   }
   if (!r.degraded.empty()) out += text("DEGRADED: %zu reasons, in the report.\n", r.degraded.size());
   if (!dir.empty()) out += "Report: " + (dir / "report.html").string() + "\n";

@@ -132,6 +132,16 @@ TEST(Procedure, StreamsEveryFrameOfAHeldPedalAndTakesTheStreamBackAsOne) {
   for (std::size_t i = 1; i < captures.size(); ++i) EXPECT_TRUE(captures.at(i).undone) << i;
 }
 
+TEST(Procedure, TellsTheCoverageWhileItGrows) {
+  auto rig = CartRig::create(presses());
+  ASSERT_TRUE(rig && rig->arm());
+  rig->run_until(1100ms);
+  EXPECT_EQ(rig->cart->now().coverage, 0);
+  rig->run_until(2700ms);
+  EXPECT_GT(rig->cart->now().coverage, 0);
+  EXPECT_LT(rig->cart->now().coverage, 1);
+}
+
 TEST(Procedure, ShowsEveryFrameInTimeAndBringsEveryBufferHome) {
   const auto rig = finished(presses());
   ASSERT_TRUE(rig);

@@ -63,6 +63,26 @@ TEST_F(Report, WritesAPageAndJsonThatNameWhatHappened) {
   EXPECT_NE(json.find("\\\"render\\\" took 31 ms"), std::string::npos);
 }
 
+TEST_F(Report, GivesTheRunsOfOneStreamOneRow) {
+  RunReport report;
+  report.captures = {{.unit = 1, .outcome = "painted"}};
+  for (int i = 0; i < 3; ++i) report.captures.push_back({.unit = 2, .outcome = "painted (stream)"});
+  report.captures.push_back({.unit = 3, .outcome = "painted (stream)"});
+  ASSERT_TRUE(write_report(dir_, report).has_value());
+  const std::string page = content_of(dir_ / "report.html");
+  EXPECT_NE(page.find("painted (stream), 3 pictures"), std::string::npos);
+  EXPECT_NE(page.find("<td>3</td>"), std::string::npos);
+}
+
+TEST(Summary, QuotesNoPercentileTwice) {
+  RunReport report;
+  report.paths = {{.name = "few", .samples = 20, .p50_ms = 2, .judged_quantile = 0.5, .judged_ms = 2},
+                  {.name = "many", .samples = 2000, .p50_ms = 2, .judged_quantile = 0.9, .judged_ms = 3}};
+  const std::string text = summary_of(report, {});
+  EXPECT_NE(text.find("few: p50 2.0 ms of 20.\n"), std::string::npos);
+  EXPECT_NE(text.find("many: p50 2.0 ms, p90 3.0 ms of 2000.\n"), std::string::npos);
+}
+
 TEST_F(Report, SaysWhereItCannotWrite) {
   std::ofstream(dir_) << "a file is in the way";
   const auto result = write_report(dir_, {});
