@@ -122,11 +122,9 @@ Result<void> judge_painting(RunReport& report, const Patient& patient, const Car
 }
 
 Result<Picture> surface_picture(const Patient& patient, const Painter& painter, const CartConfig& config,
-                                const Eigen::Vector3d& from) {
-  const Eigen::Vector3d up(config.view_up[0], config.view_up[1], config.view_up[2]);
-  auto drawn =
-      picture_of_surface(patient.surface, patient.layout, painter, eye_on(patient.surface.mesh, from, up),
-                         {.width_px = 1000, .height_px = 800, .seen_from = config.seen_from});
+                                const Eye& eye) {
+  auto drawn = picture_of_surface(patient.surface, patient.layout, painter, eye,
+                                  {.width_px = 1000, .height_px = 800, .seen_from = config.seen_from});
   if (!drawn) return tl::unexpected(drawn.error());
   Picture picture;
   picture.width_px = drawn->width_texels;
@@ -135,36 +133,77 @@ Result<Picture> surface_picture(const Patient& patient, const Painter& painter, 
   return picture;
 }
 
+struct NamedPicture {
+  std::string name;
+  Picture picture;
+};
+
+/// Where one stands inside the painting, as the scope stood at its last capture, with a wider view.
+std::optional<Eye> eye_inside(const Cart& cart) {
+  constexpr double kAhead_mm = 10, kWide_rad = 1.4;
+  for (std::size_t i = cart.captures().size(); i > 0; --i) {
+    const CaptureRecord& c = cart.captures().at(i - 1);
+    if (c.refusal != Refusal::none || c.undone) continue;
+    const Eigen::Matrix3d& axes = c.X_MC.rotation;
+    return Eye{.position_mm = c.X_MC.translation_mm,
+               .target_mm = c.X_MC.translation_mm + kAhead_mm * axes.col(2),
+               .up = -axes.col(1),
+               .field_of_view_rad = kWide_rad};
+  }
+  return std::nullopt;
+}
+
+/// The painting alone: from two sides, as a stereo pair in both orders, and from within a cavity.
+Result<std::vector<NamedPicture>> surface_pictures(Cart& cart, const Patient& patient,
+                                                   const CartConfig& config) {
+  const Eigen::Vector3d from(config.view_from[0], config.view_from[1], config.view_from[2]);
+  const Eigen::Vector3d up(config.view_up[0], config.view_up[1], config.view_up[2]);
+  const Eye front = eye_on(patient.surface.mesh, from, up);
+  const EyePair pair = stereo_eyes(front);
+  std::vector<std::pair<std::string, Eye>> wanted{
+      {"surface-front.png", front},
+      {"surface-back.png", eye_on(patient.surface.mesh, -from, up)},
+      {"left", pair.left},
+      {"right", pair.right}};
+  const std::optional<Eye> inside = eye_inside(cart);
+  if (config.seen_from == SeenFrom::inside && inside) wanted.emplace_back("surface-inside.png", *inside);
+  std::vector<NamedPicture> all;
+  for (const auto& [name, eye] : wanted) {
+    auto picture = surface_picture(patient, cart.painter(), config, eye);
+    if (!picture) return tl::unexpected(picture.error());
+    all.push_back({name, std::move(*picture)});
+  }
+  constexpr SheetLayout kSideBySide{.columns = 2, .thumb_width_px = 800, .gap_px = 8};
+  const Picture left = std::move(all[2].picture), right = std::move(all[3].picture);
+  all[2] = {"stereo-parallel.png", contact_sheet({left, right}, kSideBySide)};
+  all[3] = {"stereo-cross-eyed.png", contact_sheet({right, left}, kSideBySide)};
+  return all;
+}
+
 Result<void> write_pictures(RunReport& report, const Options& options, Cart& cart, const Patient& patient,
                             const CartConfig& config, const SimulatedDevices& devices) {
   std::error_code error;
   std::filesystem::create_directories(options.report_dir, error);
-  std::vector<Picture> all = devices.pictures().kept();
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < all.size(); ++i) names.push_back("panel-" + std::to_string(i + 1) + ".png");
-  const Eigen::Vector3d from(config.view_from[0], config.view_from[1], config.view_from[2]);
-  for (const auto& [name, direction] :
-       {std::pair{"surface-front.png", from}, std::pair{"surface-back.png", Eigen::Vector3d(-from)}}) {
-    auto picture = surface_picture(patient, cart.painter(), config, direction);
-    if (!picture) return tl::unexpected(picture.error());
-    all.push_back(std::move(*picture));
-    names.push_back(name);
+  std::vector<NamedPicture> all;
+  std::vector<Picture> sheet;
+  for (const Picture& panel : devices.pictures().kept())
+    all.push_back({"panel-" + std::to_string(all.size() + 1) + ".png", panel});
+  const std::size_t last_panel = all.empty() ? 0 : all.size() - 1;
+  auto surfaces = surface_pictures(cart, patient, config);
+  if (!surfaces) return tl::unexpected(surfaces.error());
+  all.insert(all.end(), std::make_move_iterator(surfaces->begin()), std::make_move_iterator(surfaces->end()));
+  for (const NamedPicture& one : all) {
+    if (!one.name.starts_with("stereo")) sheet.push_back(one.picture);
   }
-  const Picture sheet = contact_sheet(all, {.columns = 3, .thumb_width_px = 640});
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (auto written =
-            write_png(options.report_dir / names[i], all[i].width_px, all[i].height_px, all[i].rgba);
+  report.pictures = {"contact-sheet.png"};
+  for (std::size_t i = last_panel; i < all.size(); ++i) report.pictures.push_back(all[i].name);
+  all.push_back({"contact-sheet.png", contact_sheet(sheet, {.columns = 3, .thumb_width_px = 640})});
+  for (const NamedPicture& one : all) {
+    if (auto written = write_png(options.report_dir / one.name, one.picture.width_px, one.picture.height_px,
+                                 one.picture.rgba);
         !written)
       return written;
   }
-  if (auto written =
-          write_png(options.report_dir / "contact-sheet.png", sheet.width_px, sheet.height_px, sheet.rgba);
-      !written)
-    return written;
-  report.pictures = {"contact-sheet.png"};
-  if (all.size() > 2)
-    report.pictures.insert(report.pictures.end(),
-                           {names[all.size() - 3], names[all.size() - 2], names[all.size() - 1]});
   return {};
 }
 

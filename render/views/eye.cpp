@@ -42,6 +42,14 @@ Eye eye_on(const TriangleMesh& mesh, const Eigen::Vector3d& from, const Eigen::V
   return eye;
 }
 
+EyePair stereo_eyes(const Eye& middle, double base_of_distance) {
+  const double aside_mm = (middle.target_mm - middle.position_mm).norm() * base_of_distance / 2;
+  EyePair pair{middle, middle};
+  pair.left.sideways_mm -= aside_mm;
+  pair.right.sideways_mm += aside_mm;
+  return pair;
+}
+
 EyeMatrices matrices_of(const Eye& eye, double aspect) {
   const double distance_mm = (eye.target_mm - eye.position_mm).norm();
   EyeMatrices matrices;
@@ -49,6 +57,11 @@ EyeMatrices matrices_of(const Eye& eye, double aspect) {
   matrices.projection = glm::perspective(float(eye.field_of_view_rad), float(aspect),
                                          float(distance_mm * 0.02), float(distance_mm * 3));
   matrices.projection[1][1] *= -1;  // row 0 is the top
+  if (eye.sideways_mm != 0) {
+    const auto aside = static_cast<float>(eye.sideways_mm);
+    matrices.view[3][0] -= aside;
+    matrices.projection[2][0] = -matrices.projection[0][0] * aside / static_cast<float>(distance_mm);
+  }
   return matrices;
 }
 

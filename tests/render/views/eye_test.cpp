@@ -32,5 +32,19 @@ TEST(Eye, PutsUpAtTheTopRowAndRightAtTheRight) {
   EXPECT_GT(seen_at(matrices, {5, 0, 0}).x, 0.1F);
 }
 
+// Base b = D/30 and a point z before the target: its parallax is b z / (D - z), in the target's plane.
+TEST(StereoEyes, SeeTheTargetInOnePlaceAndWhatIsNearerWithItsParallax) {
+  const Eye middle{.position_mm = {0, 0, 90}, .target_mm = {0, 0, 0}, .up = {0, 1, 0}};
+  const EyePair eyes = stereo_eyes(middle);
+  const EyeMatrices left = matrices_of(eyes.left, 1.25), right = matrices_of(eyes.right, 1.25);
+  const double half_width_mm = 90 * std::tan(0.3) * 1.25;
+  EXPECT_NEAR(seen_at(left, {0, 0, 0}).x, 0, 1e-6);
+  EXPECT_NEAR(seen_at(right, {0, 0, 0}).x, 0, 1e-6);
+  const glm::vec3 l = seen_at(left, {4, 3, 30}), r = seen_at(right, {4, 3, 30});
+  EXPECT_NEAR((l.x - r.x) * half_width_mm, 3.0 * 30 / (90 - 30), 1e-4)
+      << "nearer: the left eye sees it further right";
+  EXPECT_NEAR(l.y, r.y, 1e-6);
+}
+
 }  // namespace
 }  // namespace orcart
