@@ -30,6 +30,16 @@ void catch_signals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
+/// Makes the report's folder, so that a run is not made in vain.
+Result<void> make_ready(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error && access(folder.c_str(), W_OK) == 0) return {};
+  return fail("--report " + folder.string() + ": no report can be written there (" +
+              (error ? error : std::error_code(errno, std::generic_category())).message() +
+              "); name a folder that may be made and written to");
+}
+
 ExitCode complain(const Error& error, ExitCode code) {
   std::fprintf(stderr, "orcartd: %s\n", error.message.c_str());
   return code;
@@ -182,8 +192,6 @@ Result<std::vector<NamedPicture>> surface_pictures(Cart& cart, const Patient& pa
 
 Result<void> write_pictures(RunReport& report, const Options& options, Cart& cart, const Patient& patient,
                             const CartConfig& config, const SimulatedDevices& devices) {
-  std::error_code error;
-  std::filesystem::create_directories(options.report_dir, error);
   std::vector<NamedPicture> all;
   std::vector<Picture> sheet;
   for (const Picture& panel : devices.pictures().kept())
@@ -217,6 +225,10 @@ ExitCode run(const Options& options) {
   auto patient = read_patient(*config);
   if (!patient) return complain(patient.error(), ExitCode::configuration);
   for (const std::string& note : patient->notes) std::fprintf(stderr, "%s\n", note.c_str());
+
+  if (!options.report_dir.empty()) {
+    if (auto ready = make_ready(options.report_dir); !ready) return complain(ready.error(), ExitCode::usage);
+  }
 
   RealClock real;
   SimulatedClock simulated;

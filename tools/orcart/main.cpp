@@ -1,5 +1,24 @@
 // orcart VERB: the one tool beside the resident program.
+#include <algorithm>
+#include <cstdio>
+
+#include "firmware-host/files/edit_distance.hpp"
 #include "tools/orcart/verbs.hpp"
+
+namespace {
+
+/// True where the first word is no verb; says so, and which was probably meant.
+bool is_unknown_verb(const CLI::App& app, const char* word) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands(nullptr)) verbs.push_back(verb->get_name());
+  if (word[0] == '-' || std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return false;
+  const std::string meant = orcart::did_you_mean(word, verbs);
+  std::fprintf(stderr, "orcart knows no verb \"%s\"; %s\n", word,
+               meant.empty() ? "orcart --help lists them" : ("did you mean " + meant + "?").c_str());
+  return true;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{
@@ -13,6 +32,7 @@ int main(int argc, char** argv) {
   orcart::add_emulate(app, exit_code);
   orcart::add_paint(app, exit_code);
   orcart::add_surface(app, exit_code);
+  if (argc > 1 && is_unknown_verb(app, argv[1])) return 2;
   CLI11_PARSE(app, argc, argv);
   return exit_code;
 }

@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <future>
+#include <string_view>
 
 #include <SDL2/SDL.h>
 
@@ -10,6 +11,12 @@ namespace orcart {
 namespace {
 
 constexpr int kEventWait_ms = 4;
+
+// Without a display SDL falls back to drivers that show nothing to nobody.
+bool shows_to_a_person(const char* driver) {
+  const std::string_view name = driver == nullptr ? "" : driver;
+  return !name.empty() && name != "offscreen" && name != "dummy" && name != "evdev";
+}
 
 }  // namespace
 
@@ -33,6 +40,8 @@ struct PreviewWindow::Screen {
   std::string open(const PanelMode& mode, const std::string& title) {
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // SIGINT and SIGTERM belong to the program
     if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) return SDL_GetError();
+    if (SDL_getenv("SDL_VIDEODRIVER") == nullptr && !shows_to_a_person(SDL_GetCurrentVideoDriver()))
+      return "there is no display";
     window = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, mode.width_px,
                               mode.height_px, SDL_WINDOW_RESIZABLE);
     // By software: the process has an EGL of its own that SDL's must not meet.

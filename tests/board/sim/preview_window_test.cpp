@@ -82,5 +82,13 @@ TEST(PreviewWindow, SaysWhyWhereThereIsNoDisplay) {
   EXPECT_NE(window.error().message.find("no window can be opened here"), std::string::npos);
 }
 
+TEST(PreviewWindow, TakesADriverThatShowsNothingForNoDisplay) {
+  for (const char* name : {"SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY"}) unsetenv(name);
+  RealClock clock;
+  const auto window = PreviewWindow::open(kMode, "orcart test", clock);
+  ASSERT_FALSE(window);
+  EXPECT_NE(window.error().message.find("set DISPLAY"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace orcart
