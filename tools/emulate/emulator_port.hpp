@@ -1,4 +1,5 @@
-// Where a client of the emulated tracker comes in: a pseudo-terminal, or a TCP port of this machine.
+// Where a client of the emulated tracker comes in: a pseudo-terminal, a TCP port of this machine, or a socket
+// in its file system.
 #pragma once
 
 #include <memory>
@@ -34,5 +35,8 @@ struct ListenAddress {
   std::uint16_t port = 8765;  ///< 0: any free one
 };
 Result<std::unique_ptr<EmulatorPort>> open_tcp_port(const ListenAddress& at);
+
+/// Takes the place of a socket that lies there already.
+Result<std::unique_ptr<EmulatorPort>> open_unix_port(const std::string& file);
 
 }  // namespace orcart

@@ -1,55 +1,14 @@
 // A TCP port as the emulated tracker's network side.
 #include <arpa/inet.h>
 #include <netinet/in.h>
-#include <netinet/tcp.h>
-#include <poll.h>
 #include <sys/socket.h>
 
 #include <cerrno>
 #include <cstring>
 
-#include "tools/emulate/emulator_port.hpp"
+#include "tools/emulate/listening_port.hpp"
 
 namespace orcart {
-namespace {
-
-class TcpPort final : public EmulatorPort {
- public:
-  TcpPort(FileDescriptor listener, std::string name) noexcept
-      : listener_(std::move(listener)), name_(std::move(name)) {}
-
-  const std::string& name() const override { return name_; }
-
-  void wait(Nanos time) override {
-    const timespec timeout{.tv_sec = time / 1s, .tv_nsec = (time % 1s).count()};
-    pollfd watched{.fd = client_.valid() ? client_.get() : listener_.get(), .events = POLLIN, .revents = 0};
-    ::ppoll(&watched, 1, &timeout, nullptr);
-    if (!client_.valid() && (watched.revents & POLLIN) != 0) admit();
-  }
-  std::size_t read(std::span<std::byte> into) override {
-    if (!client_.valid()) return 0;
-    const ssize_t count = ::read(client_.get(), into.data(), into.size());
-    if (count == 0 || (count < 0 && errno != EAGAIN)) client_.reset();
-    return count > 0 ? static_cast<std::size_t>(count) : 0;
-  }
-  void write(std::span<const std::byte> bytes) override {
-    if (client_.valid()) ::send(client_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
-  }
-  std::uint32_t baud() override { return 0; }
-
- private:
-  void admit() {
-    client_ = FileDescriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-    const int on = 1;
-    if (client_.valid()) ::setsockopt(client_.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  }
-
-  FileDescriptor listener_;
-  FileDescriptor client_;
-  std::string name_;
-};
-
-}  // namespace
 
 Result<std::unique_ptr<EmulatorPort>> open_tcp_port(const ListenAddress& at) {
   sockaddr_in address{};
@@ -71,7 +30,7 @@ Result<std::unique_ptr<EmulatorPort>> open_tcp_port(const ListenAddress& at) {
   socklen_t size = sizeof address;
   ::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size);
   const std::string name = at.address + ":" + std::to_string(ntohs(address.sin_port));
-  return std::make_unique<TcpPort>(std::move(listener), name);
+  return std::make_unique<ListeningPort>(std::move(listener), name);
 }
 
 }  // namespace orcart

@@ -15,7 +15,8 @@ namespace {
 constexpr const char* kExample =
     "Examples:\n"
     "  orcart emulate tracker --pty --noise 0.1\n"
-    "  orcart emulate tracker --tcp 8765 --fault silence@10-12 --fault bad-crc@20/50 --for 60\n\n"
+    "  orcart emulate tracker --tcp 8765 --fault silence@10-12 --fault bad-crc@20/50 --for 60\n"
+    "  orcart emulate tracker --unix tracker.socket\n\n"
     "Clients upload their tools as to a real device; each then goes round on a slow circle, 1.5 m in front "
     "of the\n"
     "sensor. --rom plugs a tool in as a wired one. A fault is KIND[:AMOUNT][@FROM[-UNTIL]][/EVERY], in "
@@ -32,6 +33,7 @@ void request_stop(int) {
 struct Arguments {
   bool pty = false;
   int tcp_port = -1;
+  std::string socket;
   std::string listen = "127.0.0.1";
   std::vector<std::string> roms;
   std::vector<std::string> faults;
@@ -45,6 +47,7 @@ struct Arguments {
 
 Result<std::unique_ptr<EmulatorPort>> open_port(const Arguments& arguments) {
   if (arguments.pty) return open_pseudo_terminal();
+  if (!arguments.socket.empty()) return open_unix_port(arguments.socket);
   return open_tcp_port({.address = arguments.listen, .port = static_cast<std::uint16_t>(arguments.tcp_port)});
 }
 
@@ -99,10 +102,12 @@ void add_emulate(CLI::App& app, int& exit_code) {
   CLI::App* tracker = emulate->add_subcommand("tracker", "An NDI Polaris or Vega");
   tracker->footer(kExample);
   const auto arguments = std::make_shared<Arguments>();
-  auto* where = tracker->add_option_group("where", "one of the two");
+  auto* where = tracker->add_option_group("where", "one of the three");
   where->add_flag("--pty", arguments->pty, "on a pseudo-terminal, whose name is printed");
   where->add_option("--tcp", arguments->tcp_port, "on a TCP port (a Vega has 8765; 0: any free one)")
       ->check(CLI::Range(0, 65535));
+  where->add_option("--unix", arguments->socket,
+                    "on a socket in the file system, such as a virtual machine's serial port connects to");
   where->require_option(1);
   tracker->add_option("--listen", arguments->listen, "IPv4 address for --tcp; this machine alone by default")
       ->capture_default_str();

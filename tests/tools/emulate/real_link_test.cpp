@@ -1,4 +1,8 @@
 // The Linux links against the emulated tracker behind a real pseudo-terminal and a real TCP port.
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <thread>
 
@@ -99,6 +103,30 @@ TEST(RealLinks, CarryTheDriverOverAPseudoTerminal) {
 TEST(RealLinks, CarryTheDriverOverTcp) {
   TcpRig rig;
   EXPECT_EQ(frames_over(rig.link(), 0), 20);
+}
+
+TEST(UnixPort, ServesOneClientAfterTheOther) {
+  const std::string file = ::testing::TempDir() + "emulated-tracker-" + std::to_string(::getpid());
+  const ServedTracker served(open_unix_port(file).value());
+  EXPECT_EQ(served.name, file);
+  for (int client = 0; client < 2; ++client) {
+    const FileDescriptor line(::socket(AF_UNIX, SOCK_STREAM, 0));
+    sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
+    file.copy(address.sun_path, sizeof address.sun_path - 1);
+    ASSERT_EQ(::connect(line.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+    ASSERT_EQ(::send(line.get(), "INIT:E3A5\r", 10, MSG_NOSIGNAL), 10);
+    std::array<char, 10> answer{};
+    EXPECT_EQ(::recv(line.get(), answer.data(), 9, MSG_WAITALL), 9);
+    EXPECT_STREQ(answer.data(), "OKAYA896\r");
+  }
+  ::unlink(file.c_str());
+}
+
+TEST(UnixPort, IsRefusedInASentenceWhereItCannotBe) {
+  EXPECT_NE(open_unix_port(std::string(200, 'a')).error().message.find("1 to 107 bytes would be accepted"),
+            std::string::npos);
+  EXPECT_NE(open_unix_port("/no-such-folder/tracker").error().message.find("cannot be listened on"),
+            std::string::npos);
 }
 
 TEST(RealLinks, SayInASentenceWhyTheyCannotBeOpened) {

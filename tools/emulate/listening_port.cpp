@@ -1,0 +1,38 @@
+// A listening socket as the emulated tracker's far end: whoever connects is its client.
+#include "tools/emulate/listening_port.hpp"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <cerrno>
+
+namespace orcart {
+
+void ListeningPort::wait(Nanos time) {
+  const timespec timeout{.tv_sec = time / 1s, .tv_nsec = (time % 1s).count()};
+  pollfd watched{.fd = client_.valid() ? client_.get() : listener_.get(), .events = POLLIN, .revents = 0};
+  ::ppoll(&watched, 1, &timeout, nullptr);
+  if (!client_.valid() && (watched.revents & POLLIN) != 0) admit();
+}
+
+std::size_t ListeningPort::read(std::span<std::byte> into) {
+  if (!client_.valid()) return 0;
+  const ssize_t count = ::read(client_.get(), into.data(), into.size());
+  if (count == 0 || (count < 0 && errno != EAGAIN)) client_.reset();
+  return count > 0 ? static_cast<std::size_t>(count) : 0;
+}
+
+void ListeningPort::write(std::span<const std::byte> bytes) {
+  if (client_.valid()) ::send(client_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+}
+
+void ListeningPort::admit() {
+  client_ = FileDescriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  const int on = 1;
+  // Refused on a local socket, which holds nothing back.
+  if (client_.valid()) ::setsockopt(client_.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+}
+
+}  // namespace orcart

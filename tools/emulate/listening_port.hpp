@@ -1,0 +1,30 @@
+// A listening socket as the emulated tracker's far end: whoever connects is its client.
+#pragma once
+
+#include <string>
+
+#include "tools/emulate/emulator_port.hpp"
+
+namespace orcart {
+
+/// Serves one client of a socket that listens already. One thread.
+class ListeningPort final : public EmulatorPort {
+ public:
+  ListeningPort(FileDescriptor listener, std::string name) noexcept
+      : listener_(std::move(listener)), name_(std::move(name)) {}
+
+  const std::string& name() const override { return name_; }
+  void wait(Nanos time) override;
+  std::size_t read(std::span<std::byte> into) override;
+  void write(std::span<const std::byte> bytes) override;
+  std::uint32_t baud() override { return 0; }
+
+ private:
+  void admit();
+
+  FileDescriptor listener_;
+  FileDescriptor client_;
+  std::string name_;
+};
+
+}  // namespace orcart
