@@ -26,7 +26,7 @@ struct FrameBuffer {
   Nanos exposure{};            ///< length of the exposure where the driver tells it, else zero
 };
 
-/// One thread calls take() and wait(); give_back() may come from the same thread only.
+/// One thread calls, but for start() and stop(), which come while no thread takes.
 class FrameSource : public WakeSource {
  public:
   virtual FrameFormat format() const noexcept = 0;
@@ -36,6 +36,9 @@ class FrameSource : public WakeSource {
   /// The oldest filled buffer; nothing_yet where there is none; damaged where the driver marks it so (it was
   /// requeued already).
   virtual Result<FrameBuffer, PortFault> take() noexcept = 0;
+  /// After any other fault, which take() repeats until then: tries to make frames flow again. Buffers on loan
+  /// stay on loan. May take long; no frame is missed by that, for none comes.
+  virtual Result<void, PortFault> recover() noexcept = 0;
   virtual void give_back(std::uint32_t index) noexcept = 0;
 };
 

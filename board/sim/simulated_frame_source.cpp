@@ -57,6 +57,19 @@ Result<void, PortFault> SimulatedFrameSource::start() noexcept {
   return {};
 }
 
+Result<void, PortFault> SimulatedFrameSource::recover() noexcept {
+  streaming_ = false;
+  broken_.reset();
+  for (Buffer& buffer : buffers_)
+    if (buffer.place == Place::filled) buffer.place = Place::free;
+  auto started = start();
+  if (!started) {
+    streaming_ = true;
+    broken_ = started.error();
+  }
+  return started;
+}
+
 void SimulatedFrameSource::stop() noexcept {
   streaming_ = false;
   broken_.reset();

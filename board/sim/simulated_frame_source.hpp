@@ -20,7 +20,7 @@ enum class CameraFault : std::uint8_t {
   delayed,       ///< frames are ready later by `amount`
   future_stamp,  ///< stamps lie ahead by `amount`
   damaged,       ///< the driver marks each frame as bad
-  io,  ///< from then on transfers fail, until the stream is stopped and started again after the fault
+  io,            ///< from then on transfers fail, until the source recovers after the fault
   disconnected,  ///< the same, because the device is gone
 };
 
@@ -55,6 +55,7 @@ class SimulatedFrameSource final : public FrameSource {
   Result<void, PortFault> start() noexcept override;
   void stop() noexcept override;
   Result<FrameBuffer, PortFault> take() noexcept override;
+  Result<void, PortFault> recover() noexcept override;
   void give_back(std::uint32_t index) noexcept override;
 
  private:

@@ -1,6 +1,8 @@
 // Buffers that came home go back first, so that the driver has somewhere to put the next frame.
 #include "firmware-host/stages/camera_stage.hpp"
 
+#include <algorithm>
+
 namespace orcart {
 
 StepReport CameraStage::step(Instant) noexcept {
@@ -11,12 +13,16 @@ StepReport CameraStage::step(Instant) noexcept {
   for (std::uint32_t i = 0; i < buffers; ++i) {
     const auto buffer = source_.take();
     if (!buffer) {
-      if (buffer.error() == PortFault::damaged) ++news_.damaged;
-      if (buffer.error() == PortFault::disconnected) news_.connected = false;
-      if (buffer.error() != PortFault::damaged) break;
+      if (buffer.error() != PortFault::damaged) {
+        recover(buffer.error());
+        break;
+      }
+      ++news_.damaged;
       continue;
     }
     news_.connected = true;
+    retry_at_ = Instant{};
+    retry_after_ = kFirstRetry;
     const CapturedFrame frame = intake_.accept(*buffer, clock_.now());
     news_.last_frame = frame.exposure_end;
     if (!lanes_.frames.try_push(frame)) source_.give_back(buffer->index);
@@ -27,6 +33,15 @@ StepReport CameraStage::step(Instant) noexcept {
   news_.connected = news_.connected && !intake_.health().stamps_faulty;
   lanes_.camera_news.post(news_);
   return report;
+}
+
+void CameraStage::recover(PortFault fault) noexcept {
+  if (fault == PortFault::nothing_yet) return;
+  news_.connected = false;
+  if (clock_.now() < retry_at_) return;
+  (void)source_.recover();
+  retry_at_ = clock_.now() + retry_after_;
+  retry_after_ = std::min<Nanos>(2 * retry_after_, kLastRetry);
 }
 
 }  // namespace orcart

@@ -21,12 +21,19 @@ class CameraStage final : public Stage {
   const CameraNews& news() const noexcept { return news_; }  ///< the stage's own thread, or after it ended
   const CameraHealth& health() const noexcept { return intake_.health(); }  ///< likewise
 
+  /// After a fault the stream is started again at once, then after 0.1 s, each time twice as late, up to 1 s.
+  static constexpr Nanos kFirstRetry = 100ms, kLastRetry = 1s;
+
  private:
+  void recover(PortFault fault) noexcept;
+
   FrameSource& source_;
   const Clock& clock_;
   FrameIntake intake_;
   Lanes& lanes_;
   CameraNews news_;
+  Instant retry_at_{};
+  Nanos retry_after_ = kFirstRetry;
 };
 
 }  // namespace orcart

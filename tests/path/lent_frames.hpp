@@ -23,6 +23,7 @@ class LentFrames final : public FrameSource {
     if (buffer) lent_twice_ += out_.insert(buffer->index).second ? 0 : 1;
     return buffer;
   }
+  Result<void, PortFault> recover() noexcept override { return camera_.recover(); }
   void give_back(std::uint32_t index) noexcept override {
     returned_twice_ += out_.erase(index) == 1 ? 0 : 1;
     camera_.give_back(index);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <set>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -16,6 +17,8 @@ namespace orcart::testing {
 class FrameSourceRig {
  public:
   virtual ~FrameSourceRig() = default;
+  /// Why there is nothing to test here, e.g. a device that is absent; empty where there is.
+  virtual std::string missing() const { return {}; }
   virtual Clock& clock() = 0;
   virtual FrameSource& source() = 0;
   virtual Nanos tolerance() const { return 0ns; }  ///< of wake-ups and of the distance between stamps
@@ -25,6 +28,10 @@ template <class Rig>
 class FrameSourceContract : public ::testing::Test {
  public:
   Rig rig;
+
+  void SetUp() override {
+    if (const std::string missing = rig.missing(); !missing.empty()) GTEST_SKIP() << missing;
+  }
 
   Nanos period() { return period_of(rig.source().format().rate_hz); }
   /// Waits for the next frame, at most five periods.

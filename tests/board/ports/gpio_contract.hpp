@@ -1,6 +1,7 @@
 // What every side of the GpioLines seam must do, written once and run over each of them.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -20,6 +21,8 @@ struct EdgeAfter {
 class GpioRig {
  public:
   virtual ~GpioRig() = default;
+  /// Why there is nothing to test here, e.g. a device that is absent; empty where there is.
+  virtual std::string missing() const { return {}; }
   virtual Clock& clock() = 0;
   virtual void schedule(const std::vector<EdgeAfter>& edges) = 0;
   virtual GpioLines& lines() = 0;                  ///< after schedule()
@@ -30,6 +33,10 @@ template <class Rig>
 class GpioContract : public ::testing::Test {
  public:
   Rig rig;
+
+  void SetUp() override {
+    if (const std::string missing = rig.missing(); !missing.empty()) GTEST_SKIP() << missing;
+  }
 
   /// Waits for and takes `count` edges, as a pedal thread does; fewer where they do not come within a second.
   std::vector<PedalEdge> take(std::size_t count) {

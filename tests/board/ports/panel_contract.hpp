@@ -2,6 +2,7 @@
 #pragma once
 
 #include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +15,8 @@ namespace orcart::testing {
 class PanelRig {
  public:
   virtual ~PanelRig() = default;
+  /// Why there is nothing to test here, e.g. a device that is absent; empty where there is.
+  virtual std::string missing() const { return {}; }
   virtual Clock& clock() = 0;
   virtual Panel& panel() = 0;
 };
@@ -22,6 +25,10 @@ template <class Rig>
 class PanelContract : public ::testing::Test {
  public:
   Rig rig;
+
+  void SetUp() override {
+    if (const std::string missing = rig.missing(); !missing.empty()) GTEST_SKIP() << missing;
+  }
 
   Instant now() { return rig.clock().now(); }
   Nanos period() { return period_of(rig.panel().mode().refresh_hz); }

@@ -13,6 +13,7 @@ namespace {
 /// Gives what it was told to give, and remembers what came back.
 class ScriptedCamera final : public FrameSource {
  public:
+  explicit ScriptedCamera(const Clock& c) : clock(c) {}
   void wait(Instant) noexcept override {}
   Instant next_event() const noexcept override { return Instant::max(); }
   FrameFormat format() const noexcept override { return {}; }
@@ -25,10 +26,19 @@ class ScriptedCamera final : public FrameSource {
     script.pop_front();
     return next;
   }
+  Result<void, PortFault> recover() noexcept override {
+    recoveries.push_back(clock.now());
+    if (cured) script.clear();
+    if (!cured) return tl::unexpected(PortFault::disconnected);
+    return {};
+  }
   void give_back(std::uint32_t index) noexcept override { home.push_back(index); }
 
   std::deque<Result<FrameBuffer, PortFault>> script;
   std::vector<std::uint32_t> home;
+  const Clock& clock;
+  bool cured = false;
+  std::vector<Instant> recoveries;
 };
 
 class CameraStageTest : public ::testing::Test {
@@ -42,7 +52,7 @@ class CameraStageTest : public ::testing::Test {
   }
 
   SimulatedClock clock;
-  ScriptedCamera camera;
+  ScriptedCamera camera{clock};
   Lanes lanes{small_lanes()};
   CameraStage stage{camera, clock, {.meaning = StampMeaning::end_of_exposure, .exposure = 8ms}, lanes};
 };
@@ -91,6 +101,36 @@ TEST_F(CameraStageTest, TellsThatTheCameraIsGoneUntilAFrameComes) {
   EXPECT_FALSE(step().connected);
   camera.script = {buffer(0)};
   EXPECT_TRUE(step().connected);
+}
+
+TEST_F(CameraStageTest, RecoversAtOnceAndThenLessAndLessOftenButOnceASecond) {
+  const Instant broken = clock.now();
+  for (int i = 0; i < 4000; ++i, clock.advance_by(1ms)) {
+    camera.script = {tl::unexpected(PortFault::io)};
+    EXPECT_FALSE(step().connected);
+  }
+  ASSERT_GE(camera.recoveries.size(), 6u);
+  EXPECT_EQ(camera.recoveries[0], broken);
+  EXPECT_EQ(camera.recoveries[1] - broken, 100ms);
+  EXPECT_EQ(camera.recoveries[2] - broken, 300ms);
+  for (std::size_t i = 1; i < camera.recoveries.size(); ++i)
+    EXPECT_LE(camera.recoveries[i] - camera.recoveries[i - 1], 1s);
+}
+
+TEST_F(CameraStageTest, TakesFramesAgainAfterARecoveryAndBeginsItsBackOffAnew) {
+  camera.script = {tl::unexpected(PortFault::io)};
+  (void)step();
+  clock.advance_by(200ms);
+  camera.cured = true;
+  camera.script = {tl::unexpected(PortFault::io)};
+  (void)step();
+  camera.script = {buffer(1)};
+  EXPECT_TRUE(step().connected);
+  camera.cured = false;
+  camera.script = {tl::unexpected(PortFault::timed_out)};
+  const std::size_t before = camera.recoveries.size();
+  (void)step();
+  EXPECT_EQ(camera.recoveries.size(), before + 1);
 }
 
 }  // namespace
