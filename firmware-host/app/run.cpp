@@ -5,8 +5,10 @@
 
 #include <csignal>
 #include <cstdio>
+#include <optional>
 
 #include "firmware-host/app/cart.hpp"
+#include "firmware-host/app/heartbeat.hpp"
 #include "firmware-host/app/kept_session.hpp"
 #include "firmware-host/app/preview.hpp"
 #include "firmware-host/app/run_figures.hpp"
@@ -67,12 +69,24 @@ class Progress {
   const char* what_ = nullptr;
 };
 
+/// The session's thread is left out: a slow disk stops captures, never the live picture.
+std::vector<WatchedThread> watched_threads(const Cart& cart) {
+  std::vector<WatchedThread> watched;
+  for (std::size_t i = 0; i < cart.thread_ledgers().size(); ++i) {
+    const ThreadSpec& spec = kThreads[i].spec;
+    if (spec.fifo_priority > 0) watched.push_back({.name = spec.name, .ledger = cart.thread_ledgers()[i]});
+  }
+  return watched;
+}
+
 /// Lets the cart go through the procedure; its coverage as it grew.
 Result<std::vector<CoveragePoint>> go(Cart& cart, const SimulatedDevices& devices, Clock& clock,
                                       SimulatedClock* simulated, const Preview* preview, Progress& progress) {
   std::vector<CoveragePoint> coverage;
+  std::optional<Heartbeat> heartbeat;
   if (simulated == nullptr) {
     if (auto started = cart.start(); !started) return tl::unexpected(started.error());
+    heartbeat.emplace(ServiceManager::from_environment(), watched_threads(cart), clock);
   }
   const Instant end = devices.end() + 500ms;
   const auto quit = [&] { return stop_asked != 0 || (preview != nullptr && preview->quit_asked()); };
