@@ -11,10 +11,10 @@ expect() { # WHAT COMMAND...
 }
 
 driver_of_card() { sed -n 's/^DRIVER=//p' "/sys/class/drm/$1/device/uevent"; }
-gpio_value() { cat "${ORCART_VM_GPIO_PULL%/*}/value"; }
 pull_moves_the_line() {
-  echo pull-up >"$ORCART_VM_GPIO_PULL" && [ "$(gpio_value)" = 1 ] && echo pull-down >"$ORCART_VM_GPIO_PULL" &&
-    [ "$(gpio_value)" = 0 ]
+  local line=$ORCART_TEST_GPIO_SIM/sim_gpio4
+  echo pull-up >"$line/pull" && [ "$(cat "$line/value")" = 1 ] &&
+    echo pull-down >"$line/pull" && [ "$(cat "$line/value")" = 0 ]
 }
 screendump_is_a_picture() { vm-host screendump machine.png && [ "$(head -c 4 /vm/machine.png | tail -c 3)" = PNG ]; }
 unplugs_and_replugs() {
@@ -27,9 +27,9 @@ unplugs_and_replugs() {
 }
 
 [ "${1:-}" != rt ] || expect "the kernel is PREEMPT_RT" test "$(cat /sys/kernel/realtime)" = 1
-expect "gpio-sim's chip is there" test -c "$ORCART_VM_GPIO_CHIP"
+expect "gpio-sim's chip is there" test -c "${ORCART_TEST_GPIO%%:*}"
 expect "a pull moves its line" pull_moves_the_line
-expect "vivid is there" grep -q vivid "/sys/class/video4linux/${ORCART_VM_VIVID##*/}/name"
+expect "vivid is there" grep -q vivid "/sys/class/video4linux/${ORCART_TEST_CAMERA##*/}/name"
 expect "v4l2loopback is there" grep -q endoscope "/sys/class/video4linux/${ORCART_VM_CAMERA##*/}/name"
 expect "the screen is driven by bochs-drm" test "$(driver_of_card card0)" = bochs-drm
 expect "its connector is connected" grep -qx connected /sys/class/drm/card0-Virtual-1/status
