@@ -36,13 +36,27 @@ TEST(Topology, TheInputsOutrankWhatTheyFeed) {
   EXPECT_EQ(spec_of(ThreadId::session).fifo_priority, 0);
 }
 
-TEST(PathBudget, IsTheSumOfItsStagesAndOnePanelPeriod) {
+TEST(PathBudget, IsTheSumOfItsStagesAndOfTheWaitsForTheirTurns) {
+  // Render: 50 ms of work on a period of 20 ms is a turn every third period, 60 ms; 30 ms one every second.
   const PathBudget software = path_budget(RenderClass::software, 50);
-  EXPECT_EQ(software.dequeue_to_submitted.bound, 50us + 3ms + 20ms + 30ms);
-  EXPECT_EQ(software.dequeue_to_submitted.p999, 20us + 2ms + 8ms + 22ms);
+  EXPECT_EQ(software.dequeue_to_submitted.bound, 4ms + 50us + 60ms + 50ms);
+  EXPECT_EQ(software.dequeue_to_submitted.p999, 4ms + 20us + 40ms + 30ms);
   EXPECT_EQ(software.dequeue_to_scan_out.bound, software.dequeue_to_submitted.bound + 20ms);
+  EXPECT_EQ(software.pedal_to_acknowledged.bound, software.dequeue_to_scan_out.bound + 5ms);
   const PathBudget gpu = path_budget(RenderClass::gpu, 60);
-  EXPECT_LE(gpu.dequeue_to_scan_out.p999, 25ms);
+  EXPECT_EQ(gpu.dequeue_to_scan_out.bound, 4ms + 50us + 10ms + 2 * period_of(60));
+}
+
+TEST(PathBudget, AGpuAt60HzIsAsFastAsThePedalAsksFor) {
+  const PathBudget gpu = path_budget(RenderClass::gpu, 60);
+  EXPECT_EQ(gpu.pedal_to_acknowledged.p999, 60ms);
+  EXPECT_EQ(gpu.pedal_to_acknowledged.bound, 100ms);
+}
+
+TEST(PathBudget, ATurnThatEndsExactlyWhenTheNextIsDueIsInTime) {
+  EXPECT_EQ(cycle_of(20ms, 20ms), 20ms);
+  EXPECT_EQ(cycle_of(20ms + Nanos{1}, 20ms), 40ms);
+  EXPECT_EQ(cycle_of(0ms, 20ms), 20ms);
 }
 
 TEST(Topology, QueuesThatMustNotOverflowAreDeepEnough) {
