@@ -2,6 +2,7 @@
 # The Debian packages: what they depend on, and that orcartd's installs and runs on a fresh Debian 12.
 set -u
 work=$(mktemp -d)
+chmod 755 "$work" # apt fetches as a user of its own
 trap 'rm -rf "$work"' EXIT
 
 skip() {
@@ -19,12 +20,13 @@ package=$(find "$work" -maxdepth 1 -name 'orcartd_*.deb')
 
 depends=$(dpkg-deb -f "$package" Depends)
 [[ $depends == *libembree3* && $depends == *libsqlite3* ]] || fail "the dependencies were not read from the program: $depends"
+dpkg-deb -c "$package" >"$work/files"
 heavy=$(grep -oE 'lib(opencv|ceres|insighttoolkit|vtk|assimp|gdcm|python)[^, ]*' <<<"$depends")
 [ -z "$heavy" ] || fail "the resident program depends on what is for tools only:" "$heavy"
 
 for file in usr/bin/orcartd usr/lib/systemd/system/orcart.service usr/lib/udev/rules.d/70-orcart.rules usr/lib/sysusers.d/orcart.conf \
   usr/share/orcart/carts/demo.toml usr/share/orcart/surfaces/LICENSE.colin27 usr/share/doc/orcartd/copyright etc/default/orcart; do
-  dpkg-deb -c "$package" | grep -q " \./$file\$" || fail "$package lacks $file"
+  grep -q " \./$file\$" "$work/files" || fail "$package lacks $file"
 done
 
 sources=/etc/apt/sources.list.d/debian.sources
@@ -32,11 +34,10 @@ sources=/etc/apt/sources.list.d/debian.sources
 command -v mmdebstrap >/dev/null || skip "mmdebstrap is not here, so the package was not installed; apt-get install mmdebstrap would bring it"
 [ "$(id -u)" -eq 0 ] || skip "only root may make a fresh Debian here, so the package was not installed"
 # systemd-standalone-sysusers makes the user without a whole systemd.
-mmdebstrap --quiet --variant=minbase --include=systemd-standalone-sysusers bookworm "$work/fresh" "$sources" >"$work/log" 2>&1 ||
+mmdebstrap --quiet --variant=minbase --skip=cleanup/apt/lists --include=systemd-standalone-sysusers bookworm "$work/fresh" "$sources" >"$work/log" 2>&1 ||
   skip "a fresh Debian could not be had ($(tail -n 1 "$work/log")), so the package was not installed"
 before=$(chroot "$work/fresh" dpkg-query -f '.\n' -W | wc -l)
 cp "$package" "$work/fresh/orcartd.deb"
-[ ! -e /etc/apt/auth.conf.d ] || cp -r /etc/apt/auth.conf.d "$work/fresh/etc/apt/"
 chroot "$work/fresh" env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends /orcartd.deb >"$work/log" 2>&1 ||
   fail "the package cannot be installed on a fresh Debian:" "$(tail -n 20 "$work/log")"
 after=$(chroot "$work/fresh" dpkg-query -f '.\n' -W | wc -l)
