@@ -33,7 +33,8 @@ start_emulator() {
   [ -x "$orcart" ] || fail "--device tracker wants $orcart; cmake --build build/dev --target orcart makes it"
   "$orcart" emulate tracker --unix "$run_dir/tracker.socket" "${emulator_options[@]}" \
     >"$run_dir/emulator.txt" 2>&1 &
-  helpers+=($!)
+  emulator=$!
+  helpers+=("$emulator")
 }
 
 # serve_guest: carries out what vm-host asks, line by line, until QEMU ends.
