@@ -1,62 +1,31 @@
-// The per-thread counters behind NoAllocationScope, and the first caller's stack.
+// Heap and locks alone, of the guards that `orcart latency` uses too.
 #include "tests/support/allocation_guard.hpp"
-
-#include <cstdlib>
-
-#include <execinfo.h>
 
 namespace orcart::testing {
 namespace {
 
-struct ThreadState {
-  bool armed = false;
-  HeapAndLockCounts counts;
-  std::array<void*, 24> stack;
-  int depth = 0;
-};
-
-// Initial-exec: the dynamic model may allocate at a thread's first touch, inside malloc.
-[[gnu::tls_model("initial-exec")]] thread_local constinit ThreadState state{};
+/// Made once: looking at the loader's list takes longer than most steps.
+const guards::CodeMap& code() {
+  static const guards::CodeMap map;
+  return map;
+}
 
 }  // namespace
 
-void guard::note(Call call) noexcept {
-  if (!state.armed) return;
-  state.armed = false;  // whatever backtrace() itself does is not counted
-  std::uint32_t* const count = call == Call::allocation ? &state.counts.allocations
-                               : call == Call::free     ? &state.counts.frees
-                                                        : &state.counts.locks;
-  ++*count;
-  if (state.depth == 0) state.depth = backtrace(state.stack.data(), static_cast<int>(state.stack.size()));
-  state.armed = true;
-}
-
-NoAllocationScope::NoAllocationScope() noexcept {
-  state.depth = backtrace(state.stack.data(), 2);  // its first call loads libgcc, which allocates
-  state.depth = 0;
-  state.counts = {};
-  state.armed = true;
-}
-
-NoAllocationScope::~NoAllocationScope() {
-  disarm();
+NoAllocationScope::NoAllocationScope() noexcept : guard_("test", code()) {
+  guard_.arm({}, true);
 }
 
 HeapAndLockCounts NoAllocationScope::counts() const noexcept {
-  return state.counts;
-}
-
-void NoAllocationScope::disarm() noexcept {
-  state.armed = false;
+  return {.allocations = guard_.all(guards::Ask::allocation),
+          .frees = guard_.all(guards::Ask::free),
+          .locks = guard_.all(guards::Ask::lock)};
 }
 
 std::string NoAllocationScope::first_caller() {
   disarm();
-  std::string text;
-  char** const lines = backtrace_symbols(state.stack.data(), state.depth);
-  for (int i = 1; lines != nullptr && i < state.depth; ++i) text += std::string("  ") + lines[i] + "\n";
-  std::free(lines);
-  return text;
+  const guards::Finding* const first = guard_.first();
+  return first != nullptr ? guards::words_for(first->frames()) : "";
 }
 
 }  // namespace orcart::testing

@@ -81,7 +81,7 @@ TEST_F(AllocationGuard, FailsAStepWithASeededAllocationAndNamesACaller) {
   EXPECT_FALSE(verdict);
   EXPECT_NE(std::string(verdict.message()).find("1 allocations, 1 frees"), std::string::npos)
       << verdict.message();
-  EXPECT_NE(std::string(verdict.message()).find("test_allocation_guard"), std::string::npos)
+  EXPECT_NE(std::string(verdict.message()).find("allocation_guard_test.cpp"), std::string::npos)
       << verdict.message();
 }
 

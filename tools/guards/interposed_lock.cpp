@@ -1,8 +1,8 @@
-// pthread_mutex_lock of the test program: reports each call to the guard, then calls the C library's.
+// pthread_mutex_lock of the program: reports each call to the guard, then calls the C library's.
 #include <dlfcn.h>
 #include <pthread.h>
 
-#include "tests/support/allocation_guard.hpp"
+#include "tools/guards/thread_guard.hpp"
 
 namespace {
 
@@ -30,12 +30,12 @@ extern const char orcart_interposed_lock;
 const char orcart_interposed_lock = 1;
 
 int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
-  orcart::testing::guard::note(orcart::testing::guard::Call::lock);
+  orcart::guards::note_call(orcart::guards::Ask::lock, __builtin_return_address(0));
   return resolve(real_lock, "pthread_mutex_lock")(mutex);
 }
 
 int pthread_mutex_trylock(pthread_mutex_t* mutex) noexcept {
-  orcart::testing::guard::note(orcart::testing::guard::Call::lock);
+  orcart::guards::note_call(orcart::guards::Ask::lock, __builtin_return_address(0));
   return resolve(real_trylock, "pthread_mutex_trylock")(mutex);
 }
 
