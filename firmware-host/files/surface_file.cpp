@@ -27,7 +27,8 @@ Result<ParsedSurface> parse(std::span<const std::byte> bytes, const std::filesys
   if (kind == ".ply") return parse_ply(bytes, name);
   if (kind == ".stl") return parse_stl(bytes, name);
   if (kind == ".obj") return parse_obj(bytes, name);
-  return fail(name + ": ends in \"" + kind + "\"; .ply, .stl and .obj are accepted");
+  if (kind == ".mz3") return parse_mz3(bytes, name);
+  return fail(name + ": ends in \"" + kind + "\"; .ply, .stl, .obj and .mz3 are accepted");
 }
 
 /// The space to convert from, or why it is not known.
@@ -100,26 +101,30 @@ Result<Surface> make_surface(TriangleMesh mesh, const std::string& name, Surface
   return surface;
 }
 
+Result<Surface> finish_surface(ParsedSurface parsed, const std::string& name, SurfaceNotes* notes,
+                               std::optional<Space> where_unstated) {
+  if (parsed.mesh.triangles.empty()) return make_surface(std::move(parsed.mesh), name, notes);
+  const auto space = space_of(parsed, where_unstated, name);
+  if (!space) return tl::unexpected(space.error());
+  convert_to_lps(*space, parsed.mesh);
+  auto surface = make_surface(std::move(parsed.mesh), name, notes);
+  if (!surface) return surface;
+  const std::string& stated = parsed.stated.hash;
+  if (!stated.empty() && stated != surface->identity.hash)
+    return fail(name + ": states the hash " + stated.substr(0, 32) + " but its triangles have " +
+                surface->identity.hash + "; it was changed after it was written, so export it again");
+  surface->identity.series = parsed.stated.series;
+  surface->identity.frame_of_reference = parsed.stated.frame_of_reference;
+  return surface;
+}
+
 Result<Surface> read_surface(const std::filesystem::path& file, SurfaceNotes* notes,
                              std::optional<Space> where_unstated) {
   const auto bytes = read_whole_file(file, kLargestSurfaceBytes);
   if (!bytes) return tl::unexpected(bytes.error());
   auto parsed = parse(*bytes, file);
   if (!parsed) return tl::unexpected(parsed.error());
-  const std::string name = file.string();
-  if (parsed->mesh.triangles.empty()) return make_surface(std::move(parsed->mesh), name, notes);
-  const auto space = space_of(*parsed, where_unstated, name);
-  if (!space) return tl::unexpected(space.error());
-  convert_to_lps(*space, parsed->mesh);
-  auto surface = make_surface(std::move(parsed->mesh), name, notes);
-  if (!surface) return surface;
-  const std::string& stated = parsed->stated.hash;
-  if (!stated.empty() && stated != surface->identity.hash)
-    return fail(name + ": states the hash " + stated.substr(0, 32) + " but its triangles have " +
-                surface->identity.hash + "; it was changed after it was written, so export it again");
-  surface->identity.series = parsed->stated.series;
-  surface->identity.frame_of_reference = parsed->stated.frame_of_reference;
-  return surface;
+  return finish_surface(*std::move(parsed), file.string(), notes, where_unstated);
 }
 
 }  // namespace orcart

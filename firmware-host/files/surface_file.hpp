@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware-host/files/space.hpp"
 #include "realtime/base/result.hpp"
 #include "realtime/geometry/triangle_mesh.hpp"
 
@@ -15,9 +16,6 @@ namespace orcart {
 struct SurfaceNotes {
   std::vector<std::string> sentences;
 };
-
-/// The two right-handed patient spaces that surface files come in.
-enum class Space { lps, ras };
 
 /// Reads and validates. Degenerate triangles are dropped and told; NaN, an empty file, indices out of range
 /// and more than 4 million triangles are refused with file, value and what would be accepted. An open surface

@@ -1,4 +1,4 @@
-// The three surface formats, parsed from memory: each gives triangles and what the file says of itself,
+// The four surface formats, parsed from memory: each gives triangles and what the file says of itself,
 // unchecked beyond that.
 #pragma once
 
@@ -25,11 +25,18 @@ struct ParsedSurface {
   std::optional<std::string> space;  ///< the word after SPACE= (3D Slicer's convention), e.g. LPS
 };
 
+/// What every reader does once it has the triangles: obeys the stated space (or `where_unstated`), checks,
+/// and gives the surface its identity; as read_surface says. `name` is the file's, for messages.
+Result<Surface> finish_surface(ParsedSurface parsed, const std::string& name, SurfaceNotes* notes,
+                               std::optional<Space> where_unstated);
+
 /// `name` is the file's, for messages. The whole file must be in `bytes`; hostile bytes give an error, never
 /// more memory than a small multiple of their count.
 Result<ParsedSurface> parse_ply(std::span<const std::byte> bytes, const std::string& name);
 Result<ParsedSurface> parse_stl(std::span<const std::byte> bytes, const std::string& name);
 Result<ParsedSurface> parse_obj(std::span<const std::byte> bytes, const std::string& name);
+/// Surf Ice's mz3, gzipped or not: 0x5A4D, what it holds, counts, triangles and single-precision vertices.
+Result<ParsedSurface> parse_mz3(std::span<const std::byte> bytes, const std::string& name);
 
 /// Takes what one comment line says: SPACE=..., and orcart's own `orcart hash|series|frame_of_reference ...`.
 void take_comment(std::string_view comment, ParsedSurface& surface);
