@@ -1,42 +1,54 @@
-// orcart surface: from a CT or MR volume to the closed surface that the cart paints on.
-#include <cstdio>
-
-#include "tools/orcart/verbs.hpp"
-
-#ifdef ORCART_WITH_VOLUMES
+// orcart surface: from a CT or MR volume, or a surface made elsewhere, to the surface that the cart paints
+// on.
 #include <unistd.h>
 
 #include <array>
+#include <cstdio>
 #include <memory>
 #include <sstream>
 
+#include "tools/mesh/import_command.hpp"
+#include "tools/orcart/verbs.hpp"
+
+#ifdef ORCART_WITH_VOLUMES
 #include "tools/surface/surface_command.hpp"
+#include "tools/surface/vtk_surface.hpp"
 #endif
 
 namespace orcart {
 
 namespace {
 
-constexpr const char* kDescription = "Make a closed surface from a CT or MR volume";
-
-#ifdef ORCART_WITH_VOLUMES
-
 constexpr const char* kFooter =
-    "The region is every voxel connected to a seed whose intensity lies from LO to HI. Seeds are millimetres "
-    "in DICOM's\n"
-    "LPS (x to the patient's left, y to the back, z up); with --seed-space RAS they are as MNI atlases and "
-    "NIfTI viewers\n"
-    "give them (x right, y front). The surface is written in LPS.\n\n"
-    "Example (the right lateral ventricle of Colin27, MNI 8,0,20):\n"
+    "A folder of DICOM slices, NIfTI, NRRD or MetaImage: the region is every voxel connected to a seed "
+    "whose\n"
+    "intensity lies from LO to HI (Hounsfield in CT). Seeds are millimetres in DICOM's LPS (x to the "
+    "patient's left,\n"
+    "y to the back, z up); with --seed-space RAS they are as MNI atlases and NIfTI viewers give them.\n"
+    "PLY, STL, OBJ, mz3, VTK or VTP: checked, measured and written as the cart likes it.\n"
+    "Files are obeyed in what they say of patient space; one that says nothing needs --space. Out comes "
+    "LPS.\n\n"
+    "Examples (the right lateral ventricle of Colin27, MNI 8,0,20; a mesh in MNI space):\n"
     "  orcart surface ch2.nii.gz --seed 8,0,20 --seed-space RAS --range 0:48 --triangles 16000 --out "
-    "ventricle.ply\n";
+    "ventricle.ply --page report\n"
+    "  orcart surface cortex_5124.mz3 --space RAS --out cortex.ply --json\n";
 
 struct Arguments {
-  SurfaceCommand command;
+  std::filesystem::path input;
   std::vector<std::string> seeds;
-  std::string seed_space = "LPS", range;
-  bool json = false;
+  std::string seed_space = "LPS", space, range, piece = "largest";
+  int triangles = 0, stack = 0;
+  double denoise_mm = 0, close_mm = 0, smooth_mm = 0.7, grid_mm = 0, pass_band = 0.1, largest_ml = 0;
+  bool accept_leak = false, json = false;
+  SurfaceOutput output;
+
+  std::optional<Space> where_unstated() const {
+    if (space.empty()) return std::nullopt;
+    return space == "RAS" ? Space::ras : Space::lps;
+  }
 };
+
+#ifdef ORCART_WITH_VOLUMES
 
 /// Numbers with one separator between them, and nothing else.
 template <std::size_t Count>
@@ -49,9 +61,10 @@ bool parse_numbers(const std::string& text, char separator, std::array<double, C
   return in.peek() == std::istringstream::traits_type::eof();
 }
 
-Result<void> take_seeds_and_range(Arguments& arguments) {
-  RegionGrowing& region = arguments.command.region;
-  region.seeds_mm.clear();
+Result<void> take_region(const Arguments& arguments, RegionGrowing& region) {
+  if (arguments.seeds.empty() || arguments.range.empty())
+    return fail(arguments.input.string() +
+                ": a volume needs --seed x,y,z and --range LO:HI; see orcart surface --help");
   for (const std::string& seed : arguments.seeds) {
     std::array<double, 3> xyz{};
     if (!parse_numbers(seed, ',', xyz))
@@ -64,108 +77,134 @@ Result<void> take_seeds_and_range(Arguments& arguments) {
     return fail("--range is \"" + arguments.range + "\"; LO:HI, such as 0:48, is accepted");
   region.lowest = range[0];
   region.highest = range[1];
+  region.largest_ml = arguments.largest_ml;
+  region.leak = arguments.accept_leak ? LeakPolicy::accept : LeakPolicy::refuse;
   return {};
 }
 
-void tell(const SurfaceFigures& figures) {
-  std::printf("region      %.2f ml (%zu voxels of it filled gaps and cavities)\n", figures.region_ml,
-              figures.filled_voxels);
-  std::printf("surface     %.2f ml, %.0f mm2, Euler number %ld, %s\n", figures.volume_ml, figures.area_mm2,
-              figures.euler_number, figures.closed ? "closed" : "open");
-  std::printf("            %zu vertices, %zu triangles\nhash        %s\n", figures.vertices,
-              figures.triangles, figures.hash.c_str());
+Result<PieceChoice> piece_of(const std::string& word) {
+  using Kind = PieceChoice::Kind;
+  if (word == "largest") return PieceChoice{};
+  if (word == "all") return PieceChoice{.kind = Kind::all};
+  std::array<double, 1> number{};
+  if (!parse_numbers(word, ' ', number) || number[0] < 1 || number[0] > 1e6)
+    return fail("--piece is \"" + word + "\"; largest, all or a number from 1 is accepted");
+  return PieceChoice{.kind = Kind::numbered, .number = static_cast<int>(number[0])};
 }
 
-void tell_json(const SurfaceFigures& figures) {
-  std::printf("{\"region_ml\": %.3f, \"filled_voxels\": %zu, \"volume_ml\": %.3f, \"area_mm2\": %.1f, ",
-              figures.region_ml, figures.filled_voxels, figures.volume_ml, figures.area_mm2);
-  std::printf(
-      "\"euler_number\": %ld, \"closed\": %s, \"vertices\": %zu, \"triangles\": %zu, \"hash\": \"%s\"}\n",
-      figures.euler_number, figures.closed ? "true" : "false", figures.vertices, figures.triangles,
-      figures.hash.c_str());
+Result<SurfaceReport> from_volume(const Arguments& arguments, const SurfaceProgress& progress) {
+  SurfaceCommand command;
+  command.volume = {
+      .path = arguments.input, .where_unstated = arguments.where_unstated(), .stack = arguments.stack};
+  if (auto taken = take_region(arguments, command.region); !taken) return tl::unexpected(taken.error());
+  const auto piece = piece_of(arguments.piece);
+  if (!piece) return tl::unexpected(piece.error());
+  command.denoise_mm = arguments.denoise_mm;
+  command.soft = {
+      .close_mm = arguments.close_mm, .smooth_mm = arguments.smooth_mm, .grid_mm = arguments.grid_mm};
+  command.extraction.pass_band = arguments.pass_band;
+  command.extraction.pieces = *piece;
+  if (arguments.triangles > 0) command.extraction.triangles = arguments.triangles;
+  command.output = arguments.output;
+  return make_surface_file(command, progress);
 }
 
-int run(Arguments& arguments) {
-  const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  const auto progress = [&](int step, int steps, const std::string& what) {
-    if (!arguments.json || terminal) std::fprintf(stderr, "[%d/%d] %s\n", step, steps, what.c_str());
-  };
-  const auto taken = take_seeds_and_range(arguments);
-  const auto figures = taken ? make_surface_file(arguments.command, progress) : tl::unexpected(taken.error());
-  if (!figures) {
-    std::fprintf(stderr, "orcart surface: %s\n", figures.error().message.c_str());
-    return 1;
-  }
-  arguments.json ? tell_json(*figures) : tell(*figures);
-  return 0;
-}
-
-#endif
-
-}  // namespace
-
-#ifdef ORCART_WITH_VOLUMES
-
-void add_surface(CLI::App& app, int& exit_code) {
-  CLI::App* verb = app.add_subcommand("surface", kDescription);
-  auto arguments = std::make_shared<Arguments>();
-  SurfaceCommand& command = arguments->command;
-  verb->footer(kFooter);
-  verb->add_option("volume", command.region.volume, "NIfTI (.nii, .nii.gz), .nrrd or MetaImage (.mha)")
-      ->required();
-  verb->add_option("--seed", arguments->seeds, "x,y,z inside the region, mm; may be given more than once")
-      ->required()
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--seed-space", arguments->seed_space,
-                   "LPS (DICOM, the default) or RAS (MNI, NIfTI viewers)")
-      ->check(CLI::IsMember({"LPS", "RAS"}));
-  verb->add_option("--range", arguments->range, "LO:HI, the intensities of the region, both included")
-      ->required();
-  verb->add_option("--triangles", command.extraction.triangles, "at most so many")
-      ->check(CLI::Range(100, 4'000'000))
-      ->capture_default_str();
-  verb->add_option("--denoise", command.region.denoise_mm,
-                   "Gaussian over the volume before growing, sigma in mm")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
-  verb->add_option("--close", command.region.close_mm, "fill dents and handles narrower than twice this, mm")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
-  verb->add_option("--smooth", command.region.smooth_mm, "Gaussian over the region, sigma in mm")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
-  verb->add_option("--grid", command.region.grid_mm,
-                   "spacing the surface is cut from, mm; 0 is the volume's own")
-      ->check(CLI::Range(0.0, 20.0))
-      ->capture_default_str();
-  verb->add_option("--pass-band", command.extraction.pass_band, "of the windowed sinc; less is smoother")
-      ->check(CLI::Range(0.001, 2.0))
-      ->capture_default_str();
-  verb->add_option("--max-volume", command.region.largest_ml, "a larger region is refused as a leak, ml")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  verb->add_option("--out", command.out, "the surface, a PLY file")->required();
-  verb->add_flag("--json", arguments->json, "the figures as JSON");
-  verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+Result<Surface> read_any_surface(const std::filesystem::path& file, SurfaceNotes* notes,
+                                 std::optional<Space> where_unstated) {
+  const std::string ending = file.extension().string();
+  if (ending == ".vtk" || ending == ".vtp") return read_vtk_surface(file, notes, where_unstated);
+  return read_surface(file, notes, where_unstated);
 }
 
 #else
 
-void add_surface(CLI::App& app, int& exit_code) {
-  CLI::App* verb = app.add_subcommand("surface", kDescription);
-  verb->footer("This build has no readers for volumes; see the sentence that the verb prints.");
-  verb->allow_extras();
-  verb->callback([&exit_code] {
-    std::fputs(
-        "orcart surface: this build cannot read volumes; install libinsighttoolkit5-dev and libvtk9-dev, and "
-        "build "
-        "with -DORCART_WITH_VOLUMES=ON\n",
-        stderr);
-    exit_code = 1;
-  });
+Result<SurfaceReport> from_volume(const Arguments& arguments, const SurfaceProgress& progress) {
+  progress(1, 1, "reading " + arguments.input.string());
+  return fail(arguments.input.string() +
+              ": this build cannot read volumes; install libinsighttoolkit5-dev and libvtk9-dev, and build "
+              "with -DORCART_WITH_VOLUMES=ON (surfaces as PLY, STL, OBJ and mz3 are read)");
+}
+
+Result<Surface> read_any_surface(const std::filesystem::path& file, SurfaceNotes* notes,
+                                 std::optional<Space> where_unstated) {
+  return read_surface(file, notes, where_unstated);
 }
 
 #endif
+
+Result<SurfaceReport> run_it(const Arguments& arguments, const SurfaceProgress& progress) {
+  if (!is_surface_name(arguments.input)) return from_volume(arguments, progress);
+  return import_surface({.input = arguments.input,
+                         .where_unstated = arguments.where_unstated(),
+                         .triangles = arguments.triangles,
+                         .output = arguments.output},
+                        read_any_surface, progress);
+}
+
+int run(const Arguments& arguments) {
+  const bool terminal = ::isatty(STDERR_FILENO) == 1;
+  const auto report = run_it(arguments, [&](int step, int steps, const std::string& what) {
+    if (!arguments.json || terminal) std::fprintf(stderr, "[%d/%d] %s\n", step, steps, what.c_str());
+  });
+  if (!report) {
+    std::fprintf(stderr, "orcart surface: %s\n", report.error().message.c_str());
+    return 1;
+  }
+  std::fputs((arguments.json ? json_of(*report) : text_of(*report)).c_str(), stdout);
+  return 0;
+}
+
+void add_growing_options(CLI::App& verb, Arguments& arguments) {
+  verb.add_option("--seed", arguments.seeds, "x,y,z inside the region, mm; may be given more than once")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb.add_option("--seed-space", arguments.seed_space,
+                  "of the seeds: LPS (DICOM, the default) or RAS (MNI, NIfTI viewers)")
+      ->check(CLI::IsMember({"LPS", "RAS"}));
+  verb.add_option("--range", arguments.range, "LO:HI, the intensities of the region, both included");
+  verb.add_option("--stack", arguments.stack, "of a DICOM folder that holds several, from 1")
+      ->check(CLI::Range(1, 1'000'000));
+  verb.add_option("--denoise", arguments.denoise_mm, "Gaussian over the volume before growing, sigma in mm")
+      ->check(CLI::Range(0.0, 10.0));
+  verb.add_option("--close", arguments.close_mm, "fill dents and handles narrower than twice this, mm")
+      ->check(CLI::Range(0.0, 10.0));
+  verb.add_option("--smooth", arguments.smooth_mm, "Gaussian over the region, sigma in mm")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  verb.add_option("--grid", arguments.grid_mm, "spacing the surface is cut from, mm; 0 is the volume's own")
+      ->check(CLI::Range(0.0, 20.0));
+  verb.add_option("--pass-band", arguments.pass_band, "of the windowed sinc; less is smoother")
+      ->check(CLI::Range(0.001, 2.0))
+      ->capture_default_str();
+  verb.add_option("--piece", arguments.piece, "of the cut surface: largest, all, or its number by size")
+      ->capture_default_str();
+  verb.add_option("--max-volume", arguments.largest_ml, "a larger region is refused as a leak, ml")
+      ->check(CLI::PositiveNumber);
+  verb.add_flag("--accept-leak", arguments.accept_leak, "take a region whose volume jumps within the range");
+}
+
+}  // namespace
+
+void add_surface(CLI::App& app, int& exit_code) {
+  CLI::App* verb = app.add_subcommand("surface", "Make the surface to paint on from a CT, an MR or a mesh");
+  auto arguments = std::make_shared<Arguments>();
+  verb->footer(kFooter);
+  verb->add_option("input", arguments->input,
+                   "a folder of DICOM slices, NIfTI, NRRD, MetaImage; or PLY, STL, OBJ, mz3, VTK, VTP")
+      ->required();
+  verb->add_option("--space", arguments->space, "patient space of a file that states none: LPS or RAS")
+      ->check(CLI::IsMember({"LPS", "RAS"}));
+  add_growing_options(*verb, *arguments);
+  verb->add_option("--triangles", arguments->triangles,
+                   "at most so many (a volume: 50000 unless told; a surface: as many as it has)")
+      ->check(CLI::Range(100, 4'000'000));
+  verb->add_option("--levels", arguments->output.levels,
+                   "thinner copies beside it, each with half the triangles")
+      ->check(CLI::Range(0, 8));
+  verb->add_option("--out", arguments->output.out, "the surface, a PLY file")->required();
+  verb->add_option("--page", arguments->output.page, "a folder for a page with pictures and figures");
+  verb->add_flag("--json", arguments->json, "the report as JSON");
+  verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
 
 }  // namespace orcart

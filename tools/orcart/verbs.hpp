@@ -10,6 +10,7 @@ namespace orcart {
 void add_bench(CLI::App& app, int& exit_code);
 void add_decode(CLI::App& app, int& exit_code);
 void add_emulate(CLI::App& app, int& exit_code);
+void add_evaluate(CLI::App& app, int& exit_code);
 void add_paint(CLI::App& app, int& exit_code);
 void add_surface(CLI::App& app, int& exit_code);
 

@@ -20,7 +20,8 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include "tools/surface/decimation.hpp"
+#include "tools/mesh/decimation.hpp"
+#include "tools/mesh/mesh_components.hpp"
 
 namespace orcart {
 
@@ -30,15 +31,15 @@ using Polygons = vtkSmartPointer<vtkPolyData>;
 
 /// Columns: one step along i, j and k.
 Eigen::Matrix3d steps_of(const SoftMask& mask) {
-  return Eigen::Map<const Eigen::Matrix3d>(mask.step_mm[0].data());
+  return Eigen::Map<const Eigen::Matrix3d>(mask.lattice.step_mm[0].data());
 }
 
 Polygons cut(const SoftMask& mask) {
   vtkNew<vtkFloatArray> values;
-  values->SetNumberOfTuples(static_cast<vtkIdType>(mask.values.size()));
-  std::copy(mask.values.begin(), mask.values.end(), values->GetPointer(0));
+  constexpr int kLent = 1;
+  values->SetArray(const_cast<float*>(mask.values.data()), static_cast<vtkIdType>(mask.values.size()), kLent);
   vtkNew<vtkImageData> image;
-  image->SetDimensions(mask.size.data());
+  image->SetDimensions(mask.lattice.size.data());
   const Eigen::RowVector3d spacing_mm = steps_of(mask).colwise().norm();
   image->SetSpacing(spacing_mm.data());
   image->GetPointData()->SetScalars(values);
@@ -76,7 +77,7 @@ TriangleMesh mesh_of(vtkPolyData& surface, const SoftMask& mask) {
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
   const Eigen::Matrix3d axes = steps_of(mask).colwise().normalized();
   const bool mirrored = axes.determinant() < 0;
-  const Eigen::Vector3d origin_mm(mask.origin_mm.data());
+  const Eigen::Vector3d origin_mm(mask.lattice.origin_mm.data());
   TriangleMesh mesh;
   std::vector<std::uint32_t> index_of(static_cast<std::size_t>(surface.GetNumberOfPoints()), kUnused);
   const auto vertex = [&](vtkIdType point) {
@@ -100,14 +101,42 @@ TriangleMesh mesh_of(vtkPolyData& surface, const SoftMask& mask) {
   return mesh;
 }
 
+double farthest_move_mm(vtkPolyData& before, vtkPolyData& after) {
+  double farthest = 0;
+  for (vtkIdType point = 0; point < before.GetNumberOfPoints(); ++point) {
+    Eigen::Vector3d a, b;
+    before.GetPoint(point, a.data());
+    after.GetPoint(point, b.data());
+    farthest = std::max(farthest, (a - b).norm());
+  }
+  return farthest;
+}
+
 }  // namespace
 
-Result<TriangleMesh> extract_surface(const SoftMask& mask, const Extraction& options) {
-  const Polygons raw = cut(mask);
+Result<ExtractedSurface> extract_surface(const SoftMask& mask, const Extraction& options) {
+  using Kind = PieceChoice::Kind;
+  Polygons raw = cut(mask);
   if (raw->GetNumberOfCells() == 0)
     return fail("the region vanished under its smoothing; a smaller --smooth or a wider --range is expected");
-  const Polygons surface = smoothed(largest_piece(raw), options);
-  return decimate(mesh_of(*surface, mask), static_cast<std::size_t>(options.triangles));
+  if (options.pieces.kind == Kind::largest) raw = largest_piece(raw);
+  const Polygons surface = smoothed(raw, options);
+  ExtractedSurface made{.smoothing_max_mm = farthest_move_mm(*raw, *surface)};
+  TriangleMesh mesh = mesh_of(*surface, mask);
+  if (options.pieces.kind == Kind::numbered) {
+    const MeshComponents pieces = components_of(mesh);
+    const auto wanted = static_cast<std::size_t>(options.pieces.number);
+    if (wanted < 1 || wanted > pieces.triangles.size())
+      return fail("the surface has " + std::to_string(pieces.triangles.size()) + " pieces and piece " +
+                  std::to_string(options.pieces.number) + " was asked for; 1 to " +
+                  std::to_string(pieces.triangles.size()) + " are accepted");
+    mesh = component(mesh, pieces, wanted - 1);
+  }
+  made.cut_triangles = mesh.triangles.size();
+  made.mesh = decimate(mesh, static_cast<std::size_t>(options.triangles));
+  if (made.mesh.triangles.size() < mesh.triangles.size())
+    made.thinning = distance_to_mesh(mesh.vertices_mm, made.mesh);
+  return made;
 }
 
 }  // namespace orcart

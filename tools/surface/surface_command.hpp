@@ -1,37 +1,24 @@
-// What `orcart surface` does: a volume in, a closed surface and its figures out.
+// What `orcart surface` does with a volume: a closed surface and its report.
 #pragma once
 
-#include <filesystem>
-#include <functional>
-#include <string>
-
-#include "realtime/base/result.hpp"
+#include "tools/mesh/import_command.hpp"
 #include "tools/surface/extraction.hpp"
 #include "tools/surface/region_growing.hpp"
+#include "tools/surface/soft_region.hpp"
+#include "tools/volume/volume_reader.hpp"
 
 namespace orcart {
 
 struct SurfaceCommand {
+  VolumeRequest volume;
+  double denoise_mm = 0;  ///< standard deviation of a Gaussian over the volume before growing
   RegionGrowing region;
+  SoftRegion soft;
   Extraction extraction;
-  std::filesystem::path out;
+  SurfaceOutput output;
 };
-
-struct SurfaceFigures {
-  double region_ml = 0;  ///< of the voxels
-  std::size_t filled_voxels = 0;
-  double volume_ml = 0;  ///< enclosed by the triangles
-  double area_mm2 = 0;
-  long euler_number = 0;  ///< vertices - edges + triangles; 2 for a ball, 2 less for each handle
-  bool closed = false;
-  std::size_t vertices = 0, triangles = 0;
-  std::string hash;
-};
-
-/// Told before each step: its number from 1, how many there are, and what it is.
-using SurfaceProgress = std::function<void(int step, int steps, const std::string& what)>;
 
 /// Writes nothing unless the surface came out closed.
-Result<SurfaceFigures> make_surface_file(const SurfaceCommand& command, const SurfaceProgress& progress);
+Result<SurfaceReport> make_surface_file(const SurfaceCommand& command, const SurfaceProgress& progress);
 
 }  // namespace orcart

@@ -25,25 +25,23 @@ std::filesystem::path colin27(const char* name) {
 
 /// What tools/make-surfaces gives for the ventricle.
 SurfaceCommand ventricle(const TemporaryFolder& folder) {
-  return {.region = {.volume = colin27("ch2.nii.gz"),
-                     .seeds_mm = {{-8, 0, 20}},
-                     .lowest = 0,
-                     .highest = 48,
-                     .close_mm = 2,
-                     .grid_mm = 0.5},
-          .extraction = {.triangles = 16'000, .pass_band = 0.01},
-          .out = folder / "made.ply"};
+  SurfaceCommand command;
+  command.volume.path = colin27("ch2.nii.gz");
+  command.region = {.seeds_mm = {{-8, 0, 20}}, .lowest = 0, .highest = 48};
+  command.soft = {.close_mm = 2, .grid_mm = 0.5};
+  command.extraction = {.triangles = 16'000, .pass_band = 0.01};
+  command.output.out = folder / "made.ply";
+  return command;
 }
 
 SurfaceCommand cortex(const TemporaryFolder& folder) {
-  return {.region = {.volume = colin27("ch2bet.nii.gz"),
-                     .seeds_mm = {{-20, 20, 40}},
-                     .lowest = 50,
-                     .highest = 255,
-                     .smooth_mm = 1,
-                     .largest_ml = 2000},
-          .extraction = {.triangles = 50'000},
-          .out = folder / "made.ply"};
+  SurfaceCommand command;
+  command.volume.path = colin27("ch2bet.nii.gz");
+  command.region = {.seeds_mm = {{-20, 20, 40}}, .lowest = 50, .highest = 255, .largest_ml = 2000};
+  command.soft.smooth_mm = 1;
+  command.extraction.triangles = 50'000;
+  command.output.out = folder / "made.ply";
+  return command;
 }
 
 void expect_as_shipped(const SurfaceCommand& command, const std::string& name) {
@@ -52,7 +50,7 @@ void expect_as_shipped(const SurfaceCommand& command, const std::string& name) {
   ASSERT_TRUE(shipped) << shipped.error().message;
   const auto figures = make_surface_file(command, [](int, int, const std::string&) {});
   ASSERT_TRUE(figures) << figures.error().message;
-  EXPECT_EQ(figures->hash, shipped->identity.hash);
+  EXPECT_EQ(figures->identity.hash, shipped->identity.hash);
   EXPECT_TRUE(figures->closed);
 }
 
@@ -86,10 +84,10 @@ TEST(Colin27, ANiftiThatIsCutShortIsRefused) {
   if (colin27("ch2.nii.gz").empty())
     GTEST_SKIP() << "ch2.nii.gz is neither in ORCART_DATA nor in mricron-data";
   SurfaceCommand command = ventricle(folder);
-  std::filesystem::copy_file(command.region.volume, folder / "cut.nii.gz");
+  std::filesystem::copy_file(command.volume.path, folder / "cut.nii.gz");
   std::filesystem::permissions(folder / "cut.nii.gz", std::filesystem::perms::owner_all);
   std::filesystem::resize_file(folder / "cut.nii.gz", 1'000'000);
-  command.region.volume = folder / "cut.nii.gz";
+  command.volume.path = folder / "cut.nii.gz";
   const auto figures = make_surface_file(command, [](int, int, const std::string&) {});
   ASSERT_FALSE(figures);
   EXPECT_NE(figures.error().message.find("it is cut short"), std::string::npos) << figures.error().message;

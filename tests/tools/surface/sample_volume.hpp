@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/firmware-host/files/temporary_folder.hpp"
+#include "tools/volume/volume_reader.hpp"
 
 namespace orcart {
 
@@ -40,6 +41,12 @@ inline SampleVolume dark_ball(double radius) {
     return x * x + y * y + z * z <= radius * radius ? 20 : 100;
   };
   return volume;
+}
+
+/// The same, as read.
+inline Volume read_sample(const TemporaryFolder& folder, const SampleVolume& sample) {
+  auto volume = read_volume({.path = sample.write(folder)});
+  return volume ? *std::move(volume) : Volume{};
 }
 
 }  // namespace orcart

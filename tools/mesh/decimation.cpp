@@ -1,5 +1,5 @@
 // Quadric edge collapse over an indexed mesh, with a heap of edges whose stale entries are skipped.
-#include "tools/surface/decimation.hpp"
+#include "tools/mesh/decimation.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,5 +1,5 @@
 // Thinned-out surfaces stay closed, keep their genus, their volume and their facing.
-#include "tools/surface/decimation.hpp"
+#include "tools/mesh/decimation.hpp"
 
 #include <cmath>
 #include <numbers>

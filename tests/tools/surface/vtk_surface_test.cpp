@@ -1,0 +1,71 @@
+// VTK's formats come in, and what 3D Slicer says of their space is obeyed.
+#include "tools/surface/vtk_surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/firmware-host/files/temporary_folder.hpp"
+
+namespace orcart {
+namespace {
+
+std::string tetrahedron_vtk(const std::string& title) {
+  return "# vtk DataFile Version 3.0\n" + title +
+         "\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 10 0 0 0 10 0 0 0 10\n"
+         "POLYGONS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+}
+
+std::string tetrahedron_vtp(const std::string& field) {
+  return "<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\"><PolyData>" + field +
+         "<Piece NumberOfPoints=\"4\" NumberOfPolys=\"4\"><Points><DataArray type=\"Float32\" "
+         "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 10 0 0 0 10 0 0 0 10</DataArray></Points><Polys>"
+         "<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 2 1 0 1 3 1 2 3 2 0 "
+         "3</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">3 6 9 "
+         "12</DataArray></Polys>"
+         "</Piece></PolyData></VTKFile>\n";
+}
+
+TEST(VtkSurface, ObeysTheSpaceInSlicersHeaderLine) {
+  const TemporaryFolder folder;
+  const auto lps = read_vtk_surface(folder.write("a.vtk", tetrahedron_vtk("3D Slicer output. SPACE=LPS")),
+                                    nullptr, std::nullopt);
+  const auto ras = read_vtk_surface(folder.write("b.vtk", tetrahedron_vtk("3D Slicer output. SPACE=RAS")),
+                                    nullptr, std::nullopt);
+  ASSERT_TRUE(lps) << lps.error().message;
+  ASSERT_TRUE(ras) << ras.error().message;
+  EXPECT_TRUE(lps->closed);
+  EXPECT_EQ(lps->mesh.vertices_mm[1].x(), 10);
+  EXPECT_EQ(ras->mesh.vertices_mm[1].x(), -10);
+}
+
+TEST(VtkSurface, ObeysTheFieldInAVtp) {
+  const TemporaryFolder folder;
+  const std::string field =
+      "<FieldData><Array type=\"String\" Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\">82 65 83 "
+      "0</Array></FieldData>";  // "RAS"
+  const auto ras = read_vtk_surface(folder.write("a.vtp", tetrahedron_vtp(field)), nullptr, std::nullopt);
+  ASSERT_TRUE(ras) << ras.error().message;
+  EXPECT_EQ(ras->mesh.vertices_mm[1].x(), -10);
+}
+
+TEST(VtkSurface, OneThatStatesNoSpaceIsRefusedUntilTold) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.vtk", tetrahedron_vtk("made by hand"));
+  const auto refused = read_vtk_surface(file, nullptr, std::nullopt);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("no coordinate system"), std::string::npos);
+  EXPECT_TRUE(read_vtk_surface(file, nullptr, Space::lps));
+}
+
+TEST(VtkSurface, GarbageAndPicturesAreRefused) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.vtk", "a.vtp"})
+    for (const char* text :
+         {"", "hello", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\n"}) {
+      const auto refused = read_vtk_surface(folder.write(name, text), nullptr, Space::lps);
+      ASSERT_FALSE(refused) << name << text;
+      EXPECT_NE(refused.error().message.find("a.vt"), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace orcart

@@ -1,0 +1,139 @@
+// Normalised cross-correlation of two patches of surface, with the best shift found to a fraction of a step.
+#include "tools/evaluate/consistency.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/evaluate/error_chain.hpp"
+
+namespace orcart {
+
+namespace {
+
+/// Square grid of greys on a tangent plane; nan where the picture does not show the place.
+struct Patch {
+  int edge = 0;
+  std::vector<float> grey;
+};
+
+double grey_at(const Picture& picture, const Eigen::Vector2d& pixel) {
+  const double x = std::clamp(pixel.x(), 0.0, picture.width_px - 1.001),
+               y = std::clamp(pixel.y(), 0.0, picture.height_px - 1.001);
+  const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
+  const auto at = [&](int i, int j) {
+    const std::uint8_t* p =
+        picture.rgba.data() + 4 * (static_cast<std::size_t>(j) * static_cast<std::size_t>(picture.width_px) +
+                                   static_cast<std::size_t>(i));
+    return 0.3 * p[0] + 0.6 * p[1] + 0.1 * p[2];
+  };
+  const double fx = x - x0, fy = y - y0;
+  return (1 - fy) * ((1 - fx) * at(x0, y0) + fx * at(x0 + 1, y0)) +
+         fy * ((1 - fx) * at(x0, y0 + 1) + fx * at(x0 + 1, y0 + 1));
+}
+
+std::optional<Eigen::Vector2d> seen_at(const EvaluationScene& scene, const Pose<M, C>& X_MC,
+                                       const Eigen::Vector3d& place_mm) {
+  const Eigen::Vector3d p_C = X_MC.rotation.transpose() * (place_mm - X_MC.translation_mm);
+  const auto pixel = project(scene.scope.lens, p_C);
+  const CircularMask& mask = scene.scope.mask;
+  if (!pixel ||
+      (*pixel - Eigen::Vector2d(mask.cx_px, mask.cy_px)).norm() > mask.radius_px - mask.soft_edge_px)
+    return std::nullopt;
+  return pixel;
+}
+
+/// The patch's samples are put onto the surface along the normal, so that a curved wall is no error.
+std::optional<Patch> patch_of(const EvaluationScene& scene, const TakenPicture& taken, const Landmark& at,
+                              double half_mm, double step_mm) {
+  const auto tangents = tangents_of(at.normal);
+  const int steps = static_cast<int>(std::lround(half_mm / step_mm));
+  Patch patch{.edge = 2 * steps + 1, .grey = {}};
+  constexpr float kLiftMm = 2;
+  for (int j = -steps; j <= steps; ++j)
+    for (int i = -steps; i <= steps; ++i) {
+      const Eigen::Vector3d flat = at.place_mm + tangents * Eigen::Vector2d(i * step_mm, j * step_mm);
+      const auto hit = scene.rays.nearest((flat + static_cast<double>(kLiftMm) * at.normal).cast<float>(),
+                                          (-at.normal).cast<float>(), 2 * kLiftMm);
+      if (!hit) return std::nullopt;
+      const Eigen::Vector3d place = flat + static_cast<double>(kLiftMm - hit->distance_mm) * at.normal;
+      const auto pixel = seen_at(scene, taken.X_MC, place);
+      if (!pixel || scene.rays.hidden(taken.X_MC.translation_mm.cast<float>(), place.cast<float>(), 0.2F))
+        return std::nullopt;
+      patch.grey.push_back(static_cast<float>(grey_at(taken.picture, *pixel)));
+    }
+  return patch;
+}
+
+/// The correlation of a's middle with b's part that lies (dx, dy) samples off its middle.
+double correlation(const Patch& a, const Patch& b, int dx, int dy) {
+  const int middle = b.edge / 2, half = a.edge / 2;
+  double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
+  for (int j = 0; j < a.edge; ++j)
+    for (int i = 0; i < a.edge; ++i) {
+      const double x = static_cast<double>(a.grey[static_cast<std::size_t>(j * a.edge + i)]);
+      const double y = static_cast<double>(
+          b.grey[static_cast<std::size_t>((middle - half + j + dy) * b.edge + middle - half + i + dx)]);
+      sa += x;
+      sb += y;
+      saa += x * x;
+      sbb += y * y;
+      sab += x * y;
+    }
+  const double n = static_cast<double>(a.grey.size());
+  const double va = saa - sa * sa / n, vb = sbb - sb * sb / n;
+  constexpr double kLeastVariance = 1.5;  // grey steps squared: a patch without texture tells nothing
+  if (va < kLeastVariance * n || vb < kLeastVariance * n) return -1;
+  return (sab - sa * sb / n) / std::sqrt(va * vb);
+}
+
+/// The top of a parabola through three values, in steps from the middle one.
+double top_of(double before, double at, double after) {
+  const double bend = before - 2 * at + after;
+  return bend < 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0;
+}
+
+std::optional<PatchShift> shift_of(const Patch& a, const Patch& b, const Landmark& at, double step_mm) {
+  const int reach = (b.edge - a.edge) / 2;
+  int best_x = 0, best_y = 0;
+  double best = -1;
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx)
+      if (const double c = correlation(a, b, dx, dy); c > best) {
+        best = c;
+        best_x = dx;
+        best_y = dy;
+      }
+  constexpr double kLeast = 0.7;
+  if (best < kLeast || std::abs(best_x) == reach || std::abs(best_y) == reach) return std::nullopt;
+  const Eigen::Vector2d steps(
+      best_x + top_of(correlation(a, b, best_x - 1, best_y), best, correlation(a, b, best_x + 1, best_y)),
+      best_y + top_of(correlation(a, b, best_x, best_y - 1), best, correlation(a, b, best_x, best_y + 1)));
+  return PatchShift{
+      .place_mm = at.place_mm, .shift_mm = step_mm * steps, .normal = at.normal, .correlation = best};
+}
+
+}  // namespace
+
+PairConsistency compare(const EvaluationScene& scene, const TakenPicture& first, const TakenPicture& second,
+                        const ConsistencySettings& settings, RandomStream& random) {
+  PairConsistency pair;
+  const auto places =
+      landmarks_of_chance(scene, first.X_MC, static_cast<std::size_t>(settings.patches), random);
+  for (const Landmark& place : places) {
+    const auto b =
+        patch_of(scene, second, place, settings.patch_mm / 2 + settings.reach_mm, settings.step_mm);
+    const auto a = b ? patch_of(scene, first, place, settings.patch_mm / 2, settings.step_mm) : std::nullopt;
+    if (!a) continue;
+    ++pair.looked_at;
+    if (const auto shift = shift_of(*a, *b, place, settings.step_mm)) pair.patches.push_back(*shift);
+  }
+  std::vector<double> lengths;
+  for (const PatchShift& patch : pair.patches) lengths.push_back(patch.shift_mm.norm());
+  if (lengths.empty()) return pair;
+  std::sort(lengths.begin(), lengths.end());
+  pair.median_mm = lengths[lengths.size() / 2];
+  pair.p95_mm = lengths[std::min(lengths.size() - 1, lengths.size() * 95 / 100)];
+  return pair;
+}
+
+}  // namespace orcart

@@ -1,0 +1,44 @@
+// What may be wrong between an endoscope's picture and the surface it is painted on, and by how much.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace orcart {
+
+/// Where an error comes from. Each can be drawn alone.
+enum class Component { tracker, hand_eye, registration, lens, medium, time, mapping };
+inline constexpr std::size_t kComponents = 7;
+inline constexpr std::array<const char*, kComponents> kComponentNames{
+    "tracker", "hand-eye", "registration", "lens", "medium", "time", "mapping"};
+
+/// Which components are drawn.
+using ComponentSet = std::array<bool, kComponents>;
+inline constexpr ComponentSet kAllComponents{true, true, true, true, true, true, true};
+constexpr ComponentSet only(Component component) {
+  ComponentSet set{};
+  set[static_cast<std::size_t>(component)] = true;
+  return set;
+}
+
+/// One standard deviation each, unless said otherwise. Gaussian, independent from set-up to set-up.
+struct ErrorModel {
+  /// RMS of a marker's 3-D error, as a tracker's accuracy is stated; each axis has it divided by sqrt(3).
+  /// Drawn for every marker of scope and reference, and the bodies are fitted to them.
+  double marker_rms_mm = 0.12;
+  double fiducial_rms_mm = 0.3;  ///< RMS of a fiducial's 3-D localisation error, image and pointer together
+  int fiducials = 6;
+  double hand_eye_mm = 0.12;     ///< of C's place in the scope marker, each axis
+  double hand_eye_rad = 0.0012;  ///< of its turn, each axis
+  double lens_centre_px = 0.4;   ///< each axis
+  double lens_focal = 0.001;     ///< relative
+  double lens_edge_px = 0.3;     ///< of the distortion, at the edge of the picture
+  double refraction = 0.001;     ///< relative, of the medium's index against the calibration's
+  double time_s = 0.002;         ///< of the calibrated offset and the tracker's latency together
+  double speed_mm_s = 10;        ///< of the tip at a capture, in a direction of chance
+  double turn_rad_s = 0.1;       ///< likewise
+  double picture_px = 0.3;       ///< of a landmark's place in the picture, each axis
+  double texel_mm = 0.15;        ///< edge of a texel of the atlas: the paint's own grain
+};
+
+}  // namespace orcart

@@ -1,0 +1,103 @@
+// Reads, checks, thins out, measures and writes a surface.
+#include "tools/mesh/import_command.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "tools/mesh/decimation.hpp"
+
+namespace orcart {
+
+namespace {
+
+std::string ending_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return ending;
+}
+
+Result<void> write_levels(const Surface& surface, const SurfaceOutput& output, SurfaceReport& report) {
+  constexpr std::size_t kFewest = 100;
+  TriangleMesh mesh = surface.mesh;
+  for (int level = 1; level <= output.levels && mesh.triangles.size() / 2 >= kFewest; ++level) {
+    mesh = decimate(mesh, mesh.triangles.size() / 2);
+    std::filesystem::path file = output.out;
+    file.replace_filename(output.out.stem().string() + "-" + std::to_string(level) + ".ply");
+    auto thinner = make_surface(mesh, file.string());
+    if (!thinner) return tl::unexpected(thinner.error());
+    thinner->identity.series = surface.identity.series;
+    thinner->identity.frame_of_reference = surface.identity.frame_of_reference;
+    if (auto written = write_ply(file, *thinner); !written) return written;
+    report.levels.push_back({.file = file,
+                             .triangles = mesh.triangles.size(),
+                             .deviation = distance_to_mesh(surface.mesh.vertices_mm, mesh)});
+  }
+  return {};
+}
+
+}  // namespace
+
+bool is_surface_name(const std::filesystem::path& file) {
+  constexpr std::array kEndings{".ply", ".stl", ".obj", ".mz3", ".vtk", ".vtp"};
+  return std::find(kEndings.begin(), kEndings.end(), ending_of(file)) != kEndings.end();
+}
+
+Result<void> check_output(const SurfaceOutput& output) {
+  if (output.out.extension() != ".ply")
+    return fail(output.out.string() + ": the surface is written as PLY; a name ending in .ply is accepted");
+  const auto folder = output.out.parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder))
+    return fail(folder.string() + ": is no folder; --out is to lie in one that is there");
+  return {};
+}
+
+Result<void> write_surface(const Surface& surface, const SurfaceOutput& output, SurfaceReport& report) {
+  auto figures = measure_mesh(surface.mesh);
+  if (!figures) return tl::unexpected(figures.error());
+  report.mesh = *figures;
+  report.closed = surface.closed;
+  report.identity = surface.identity;
+  report.out = output.out;
+  if (const auto trouble = trouble_of(report.mesh)) report.notes.push_back(*trouble);
+  if (auto written = write_ply(output.out, surface); !written) return written;
+  return write_levels(surface, output, report);
+}
+
+Result<SurfaceReport> import_surface(const ImportCommand& command, const SurfaceReader& reader,
+                                     const SurfaceProgress& progress) {
+  if (auto sound = check_output(command.output); !sound) return tl::unexpected(sound.error());
+  const std::string name = command.input.string();
+  progress(1, 3, "reading " + name);
+  SurfaceNotes notes;
+  auto surface = reader(command.input, &notes, command.where_unstated);
+  if (!surface) return tl::unexpected(surface.error());
+  SurfaceReport report{.source = name,
+                       .kind = "surface, " + ending_of(command.input).substr(1),
+                       .triangles_before = surface->mesh.triangles.size(),
+                       .notes = notes.sentences};
+  if (surface->identity.series.empty()) surface->identity.series = command.input.filename().string();
+  if (command.triangles > 0 && report.triangles_before > static_cast<std::size_t>(command.triangles)) {
+    progress(2, 3, "thinning out");
+    const SurfaceIdentity identity = surface->identity;
+    const TriangleMesh before = surface->mesh;
+    auto thinner = make_surface(decimate(before, static_cast<std::size_t>(command.triangles)), name);
+    if (!thinner) return tl::unexpected(thinner.error());
+    surface = *std::move(thinner);
+    surface->identity.series = identity.series;
+    surface->identity.frame_of_reference = identity.frame_of_reference;
+    report.thinning = distance_to_mesh(before.vertices_mm, surface->mesh);
+  }
+  progress(3, 3, "measuring and writing " + command.output.out.string());
+  if (auto written = write_surface(*surface, command.output, report); !written)
+    return tl::unexpected(written.error());
+  if (command.output.page.empty()) return report;
+  auto pictures = pictures_of(surface->mesh);
+  if (!pictures) return tl::unexpected(pictures.error());
+  report.pictures = *std::move(pictures);
+  if (auto page = write_page(command.output.page, report); !page) return tl::unexpected(page.error());
+  return report;
+}
+
+}  // namespace orcart

@@ -1,0 +1,45 @@
+// `orcart surface` for a surface that was made elsewhere: checked, measured, and written as the cart likes
+// it.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+
+#include "firmware-host/files/surface_file.hpp"
+#include "tools/mesh/surface_report.hpp"
+
+namespace orcart {
+
+/// Told before each step: its number from 1, how many there are, and what it is.
+using SurfaceProgress = std::function<void(int step, int steps, const std::string& what)>;
+
+struct SurfaceOutput {
+  std::filesystem::path out;   ///< a PLY file
+  std::filesystem::path page;  ///< a folder for the page and its pictures; empty: none
+  int levels = 0;              ///< thinner copies beside it: NAME-1.ply with half the triangles, and so on
+};
+
+struct ImportCommand {
+  std::filesystem::path input;
+  std::optional<Space> where_unstated;
+  int triangles = 0;  ///< thin out to at most so many; 0: leave as it is
+  SurfaceOutput output;
+};
+
+/// Whether a file's name says that it holds a surface: .ply, .stl, .obj, .mz3, .vtk, .vtp.
+bool is_surface_name(const std::filesystem::path& file);
+
+using SurfaceReader =
+    std::function<Result<Surface>(const std::filesystem::path&, SurfaceNotes*, std::optional<Space>)>;
+
+/// An open or self-intersecting surface is accepted and told. Writes nothing where it fails.
+Result<SurfaceReport> import_surface(const ImportCommand& command, const SurfaceReader& reader,
+                                     const SurfaceProgress& progress);
+
+/// Refuses a name that is no PLY's and a folder that is not there, before any work is done.
+Result<void> check_output(const SurfaceOutput& output);
+/// Writes the surface, its levels and the page, and completes the report with them.
+Result<void> write_surface(const Surface& surface, const SurfaceOutput& output, SurfaceReport& report);
+
+}  // namespace orcart

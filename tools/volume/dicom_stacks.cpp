@@ -1,0 +1,173 @@
+// Sorts the slices of a folder into stacks: by what their headers say, never by their names.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "tools/volume/dicom_slice.hpp"
+
+namespace orcart {
+
+namespace {
+
+double dot(const PlainPoint& a, const PlainPoint& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+PlainPoint normal_of(const DicomSlice& slice) {
+  const auto& [u, v] = std::tie(slice.along_columns, slice.along_rows);
+  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+
+std::string millimetres(double mm) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g mm", mm);
+  return text;
+}
+
+/// What all slices of one stack share. Directions to 0.001 (0.06 degrees), which scanners write them to.
+std::string kind_of(const DicomSlice& slice) {
+  std::string key = slice.series + "|" + slice.frame_of_reference + "|" + slice.variant + "|" +
+                    std::to_string(slice.columns) + "x" + std::to_string(slice.rows);
+  for (const auto& direction : {slice.along_columns, slice.along_rows})
+    for (const double x : direction) key += "|" + std::to_string(std::lround(x * 1000));
+  for (const double step : {slice.column_step_mm, slice.row_step_mm})
+    key += "|" + std::to_string(std::lround(step * 1e5));
+  return key;
+}
+
+double median(std::vector<double> numbers) {
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  return *middle;
+}
+
+DicomStack stack_of(std::vector<DicomSlice> slices) {
+  const DicomSlice& first = slices.front();
+  const DicomSlice& last = slices.back();
+  DicomStack stack;
+  stack.lattice = {.size = {first.columns, first.rows, static_cast<int>(slices.size())},
+                   .origin_mm = first.position_mm,
+                   .step_mm = {}};
+  const PlainPoint normal = normal_of(first);
+  for (std::size_t row = 0; row < 3; ++row) {
+    stack.lattice.step_mm[0][row] = first.along_columns[row] * first.column_step_mm;
+    stack.lattice.step_mm[1][row] = first.along_rows[row] * first.row_step_mm;
+    stack.lattice.step_mm[2][row] = slices.size() > 1 ? (last.position_mm[row] - first.position_mm[row]) /
+                                                            static_cast<double>(slices.size() - 1)
+                                                      : normal[row] * std::max(first.thickness_mm, 1e-3);
+  }
+  double worst_mm = 0;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const PlainPoint expected = place_of(stack.lattice, {0, 0, static_cast<double>(i)});
+    for (std::size_t row = 0; row < 3; ++row)
+      worst_mm = std::max(worst_mm, std::abs(expected[row] - slices[i].position_mm[row]));
+  }
+  const double step_mm = step_length_mm(stack.lattice, 2);
+  if (worst_mm > 0.02 * step_mm)
+    stack.notes.push_back("slices lie up to " + millimetres(worst_mm) + " from an even spacing of " +
+                          millimetres(step_mm) + "; they are taken as evenly spaced");
+  const double upright = slices.size() > 1 ? std::abs(dot(stack.lattice.step_mm[2], normal)) / step_mm : 1;
+  if (upright < 0.9998)
+    stack.notes.push_back("the stack leans by " +
+                          std::to_string(std::lround(std::acos(upright) * 1800 / M_PI) / 10.0).substr(0, 4) +
+                          " degrees (a tilted gantry); it is kept so");
+  stack.slices = std::move(slices);
+  return stack;
+}
+
+/// Cuts one group, sorted along its normal, at its gaps.
+Result<void> cut_at_gaps(const std::string& folder, std::vector<DicomSlice> group,
+                         std::vector<DicomStack>& stacks) {
+  const PlainPoint normal = normal_of(group.front());
+  const auto height = [&](const DicomSlice& slice) { return dot(slice.position_mm, normal); };
+  std::stable_sort(group.begin(), group.end(),
+                   [&](const DicomSlice& a, const DicomSlice& b) { return height(a) < height(b); });
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < group.size(); ++i) {
+    steps.push_back(height(group[i]) - height(group[i - 1]));
+    if (steps.back() < 1e-3)
+      return fail(folder + ": " + group[i - 1].file.filename().string() + " and " +
+                  group[i].file.filename().string() +
+                  " lie at the same place and nothing in them says why; one volume (one series, one time, "
+                  "one echo) is expected");
+  }
+  const double usual = steps.empty() ? 0 : median(steps);
+  std::vector<DicomSlice> part;
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    if (i > 0 && steps[i - 1] > 1.5 * usual) stacks.push_back(stack_of(std::exchange(part, {})));
+    part.push_back(std::move(group[i]));
+  }
+  stacks.push_back(stack_of(std::move(part)));
+  return {};
+}
+
+std::string describe(const DicomStack& stack) {
+  const DicomSlice &first = stack.slices.front(), &last = stack.slices.back();
+  const PlainPoint normal = normal_of(first);
+  char text[160];
+  std::snprintf(text, sizeof text, "%zu slices %.6g mm apart, from %.6g to %.6g mm along their normal",
+                stack.slices.size(), step_length_mm(stack.lattice, 2), dot(first.position_mm, normal),
+                dot(last.position_mm, normal));
+  std::string said = text;
+  if (!first.variant.empty()) said += " (" + first.variant + ")";
+  if (!first.series.empty())
+    said += ", series ..." +
+            first.series.substr(first.series.size() - std::min<std::size_t>(first.series.size(), 12));
+  return said;
+}
+
+}  // namespace
+
+Result<std::vector<DicomStack>> stack_slices(const std::string& folder, std::vector<DicomSlice> slices) {
+  std::set<std::size_t> patients;
+  for (const DicomSlice& slice : slices) patients.insert(slice.patient);
+  if (patients.size() > 1)
+    return fail(folder + ": holds images of " + std::to_string(patients.size()) +
+                " patients; the images of one are expected");
+  std::map<std::string, std::vector<DicomSlice>> groups;
+  for (DicomSlice& slice : slices) {
+    if (!slice.has_position)
+      return fail(slice.file.string() +
+                  ": states no ImagePositionPatient and ImageOrientationPatient; slices that say where they "
+                  "lie are expected (a secondary capture has no place)");
+    groups[kind_of(slice)].push_back(std::move(slice));
+  }
+  std::vector<DicomStack> stacks;
+  for (auto& [kind, group] : groups)
+    if (auto cut = cut_at_gaps(folder, std::move(group), stacks); !cut) return tl::unexpected(cut.error());
+  std::stable_sort(stacks.begin(), stacks.end(), [](const DicomStack& a, const DicomStack& b) {
+    return a.slices.size() > b.slices.size();
+  });
+  return stacks;
+}
+
+Result<DicomStack> choose_stack(const std::string& folder, std::vector<DicomStack> stacks, int wanted) {
+  const auto thick = std::count_if(stacks.begin(), stacks.end(),
+                                   [](const DicomStack& stack) { return stack.slices.size() > 1; });
+  if (wanted == 0 && thick == 1) {
+    DicomStack chosen = std::move(stacks.front());
+    if (stacks.size() > 1)
+      chosen.notes.push_back(std::to_string(stacks.size() - 1) +
+                             " single images that belong to no stack (a localizer?) were left out");
+    return chosen;
+  }
+  if (wanted >= 1 && static_cast<std::size_t>(wanted) <= stacks.size())
+    return std::move(stacks[static_cast<std::size_t>(wanted) - 1]);
+  if (thick == 0)
+    return fail(folder + ": holds " + std::to_string(stacks.size()) +
+                " DICOM image(s), none beside another; a stack of slices is expected");
+  std::string list;
+  constexpr std::size_t kMostListed = 8;
+  for (std::size_t i = 0; i < std::min(stacks.size(), kMostListed); ++i)
+    list += "; " + std::to_string(i + 1) + ": " + describe(stacks[i]);
+  if (stacks.size() > kMostListed) list += "; and so on";
+  return fail(folder + ": is no single volume but " + std::to_string(stacks.size()) +
+              " stacks (slices missing between them, or several series)" + list +
+              "; --stack N, to take one of them, is expected" +
+              (wanted > 0 ? " with N up to " + std::to_string(stacks.size()) : ""));
+}
+
+}  // namespace orcart
