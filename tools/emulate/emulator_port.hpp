@@ -26,9 +26,15 @@ class EmulatorPort {
   virtual void write(std::span<const std::byte> bytes) = 0;
   /// The baud rate that the client has set; 0 where it cannot be told, or nobody is there.
   virtual std::uint32_t baud() = 0;
+  /// As if the cable were pulled: whoever is there loses it, and nobody can come in. Again: no effect.
+  virtual void cut() = 0;
+  /// Plugs the cable in again, under the same name where that can be.
+  virtual void mend() = 0;
 };
 
-Result<std::unique_ptr<EmulatorPort>> open_pseudo_terminal();
+/// `link`, where it is not empty, is made a symbolic link to the terminal: a name that stays. One that is
+/// there already is written over; any other file is refused.
+Result<std::unique_ptr<EmulatorPort>> open_pseudo_terminal(const std::string& link = {});
 
 struct ListenAddress {
   std::string address = "127.0.0.1";

@@ -6,6 +6,11 @@
 namespace orcart {
 
 void EmulatorServer::step(Nanos longest) {
+  if (device_.faults().active(NdiFault::cut, clock_.now(), 0) != nullptr) {
+    port_.cut();
+  } else {
+    port_.mend();
+  }
   const Nanos until_reply =
       device_.next_event() == Instant::max() ? longest : device_.next_event() - clock_.now();
   port_.wait(std::clamp(until_reply, Nanos{0}, longest));

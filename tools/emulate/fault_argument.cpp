@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kKinds =
     "silence, late, truncated, garbage, bad-crc, wrong-handle, frozen-frame, infrared, disabled, unplugged, "
-    "reset";
+    "reset, bump, alert, cut";
 
 /// Cuts off what follows the last `mark`; nothing where it is not there.
 std::optional<std::string_view> cut_off(std::string_view& text, char mark) {

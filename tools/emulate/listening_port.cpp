@@ -12,6 +12,7 @@ namespace orcart {
 
 void ListeningPort::wait(Nanos time) {
   const timespec timeout{.tv_sec = time / 1s, .tv_nsec = (time % 1s).count()};
+  // A negative descriptor is passed over: while the cable is out this only sleeps.
   pollfd watched{.fd = client_.valid() ? client_.get() : listener_.get(), .events = POLLIN, .revents = 0};
   ::ppoll(&watched, 1, &timeout, nullptr);
   if (!client_.valid() && (watched.revents & POLLIN) != 0) admit();
@@ -26,6 +27,16 @@ std::size_t ListeningPort::read(std::span<std::byte> into) {
 
 void ListeningPort::write(std::span<const std::byte> bytes) {
   if (client_.valid()) ::send(client_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+}
+
+void ListeningPort::cut() {
+  client_.reset();
+  listener_.reset();
+}
+
+void ListeningPort::mend() {
+  if (listener_.valid()) return;
+  if (auto listener = again_()) listener_ = std::move(*listener);  // else tried again at the next turn
 }
 
 void ListeningPort::admit() {

@@ -1,6 +1,7 @@
 // A listening socket as the emulated tracker's far end: whoever connects is its client.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "tools/emulate/emulator_port.hpp"
@@ -10,14 +11,18 @@ namespace orcart {
 /// Serves one client of a socket that listens already. One thread.
 class ListeningPort final : public EmulatorPort {
  public:
-  ListeningPort(FileDescriptor listener, std::string name) noexcept
-      : listener_(std::move(listener)), name_(std::move(name)) {}
+  /// `again` listens at the same place once more, after the cable was out.
+  using Listen = std::function<Result<FileDescriptor>()>;
+  ListeningPort(FileDescriptor listener, std::string name, Listen again) noexcept
+      : listener_(std::move(listener)), name_(std::move(name)), again_(std::move(again)) {}
 
   const std::string& name() const override { return name_; }
   void wait(Nanos time) override;
   std::size_t read(std::span<std::byte> into) override;
   void write(std::span<const std::byte> bytes) override;
   std::uint32_t baud() override { return 0; }
+  void cut() override;
+  void mend() override;
 
  private:
   void admit();
@@ -25,6 +30,7 @@ class ListeningPort final : public EmulatorPort {
   FileDescriptor listener_;
   FileDescriptor client_;
   std::string name_;
+  Listen again_;
 };
 
 }  // namespace orcart

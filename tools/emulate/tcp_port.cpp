@@ -10,7 +10,9 @@
 
 namespace orcart {
 
-Result<std::unique_ptr<EmulatorPort>> open_tcp_port(const ListenAddress& at) {
+namespace {
+
+Result<FileDescriptor> listen_at(const ListenAddress& at) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(at.port);
@@ -27,10 +29,20 @@ Result<std::unique_ptr<EmulatorPort>> open_tcp_port(const ListenAddress& at) {
     return fail("TCP port " + std::to_string(at.port) + " of " + at.address + " cannot be listened on: " +
                 std::strerror(errno) + "; a free port above 1023 would be accepted");
   }
+  return listener;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<EmulatorPort>> open_tcp_port(const ListenAddress& at) {
+  auto listener = listen_at(at);
+  if (!listener) return tl::unexpected(listener.error());
+  sockaddr_in address{};
   socklen_t size = sizeof address;
-  ::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size);
-  const std::string name = at.address + ":" + std::to_string(ntohs(address.sin_port));
-  return std::make_unique<ListeningPort>(std::move(listener), name);
+  ::getsockname(listener->get(), reinterpret_cast<sockaddr*>(&address), &size);
+  const ListenAddress same{.address = at.address, .port = ntohs(address.sin_port)};
+  const std::string name = same.address + ":" + std::to_string(same.port);
+  return std::make_unique<ListeningPort>(std::move(*listener), name, [same] { return listen_at(same); });
 }
 
 }  // namespace orcart

@@ -18,9 +18,7 @@ void remove_dead_socket(const std::string& file) {
   if (::lstat(file.c_str(), &found) == 0 && S_ISSOCK(found.st_mode)) ::unlink(file.c_str());
 }
 
-}  // namespace
-
-Result<std::unique_ptr<EmulatorPort>> open_unix_port(const std::string& file) {
+Result<FileDescriptor> listen_at(const std::string& file) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (file.empty() || file.size() >= sizeof address.sun_path) {
@@ -36,7 +34,15 @@ Result<std::unique_ptr<EmulatorPort>> open_unix_port(const std::string& file) {
     return fail("socket " + file + " cannot be listened on: " + std::strerror(errno) +
                 "; a free name in a folder that may be written would be accepted");
   }
-  return std::make_unique<ListeningPort>(std::move(listener), file);
+  return listener;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<EmulatorPort>> open_unix_port(const std::string& file) {
+  auto listener = listen_at(file);
+  if (!listener) return tl::unexpected(listener.error());
+  return std::make_unique<ListeningPort>(std::move(*listener), file, [file] { return listen_at(file); });
 }
 
 }  // namespace orcart

@@ -16,14 +16,17 @@ constexpr const char* kExample =
     "Examples:\n"
     "  orcart emulate tracker --pty --noise 0.1\n"
     "  orcart emulate tracker --tcp 8765 --fault silence@10-12 --fault bad-crc@20/50 --for 60\n"
-    "  orcart emulate tracker --unix tracker.socket\n\n"
+    "  orcart emulate tracker --unix tracker.socket\n"
+    "  orcart emulate tracker --pty --link /tmp/ttyNDI --model polaris --fault cut@10-15\n\n"
     "Clients upload their tools as to a real device; each then goes round on a slow circle, 1.5 m in front "
     "of the\n"
     "sensor. --rom plugs a tool in as a wired one. A fault is KIND[:AMOUNT][@FROM[-UNTIL]][/EVERY], in "
     "seconds from\n"
     "the start; KIND is silence, late (AMOUNT ms), truncated (after AMOUNT bytes), garbage, bad-crc, "
     "wrong-handle,\n"
-    "frozen-frame, infrared, disabled or unplugged (tool AMOUNT), or reset.";
+    "frozen-frame, infrared, disabled or unplugged (tool AMOUNT), reset, bump, alert (bit AMOUNT of "
+    "Info.Status.Alerts),\n"
+    "or cut (the cable is out; with --link the terminal comes back under the same name).";
 
 volatile std::sig_atomic_t stop_requested = 0;
 void request_stop(int) {
@@ -35,6 +38,8 @@ struct Arguments {
   int tcp_port = -1;
   std::string socket;
   std::string listen = "127.0.0.1";
+  std::string link;
+  std::string model = "vega";
   std::vector<std::string> roms;
   std::vector<std::string> faults;
   double rate_hz = 60;
@@ -46,7 +51,7 @@ struct Arguments {
 };
 
 Result<std::unique_ptr<EmulatorPort>> open_port(const Arguments& arguments) {
-  if (arguments.pty) return open_pseudo_terminal();
+  if (arguments.pty) return open_pseudo_terminal(arguments.link);
   if (!arguments.socket.empty()) return open_unix_port(arguments.socket);
   return open_tcp_port({.address = arguments.listen, .port = static_cast<std::uint16_t>(arguments.tcp_port)});
 }
@@ -71,7 +76,8 @@ Result<void> serve(const Arguments& arguments) {
   const Instant start = RealClock{}.now();
   const CirclingTools motion;
   const auto device = std::make_unique<NdiEmulator>(
-      NdiEmulatorSettings{.frame_rate_hz = arguments.rate_hz,
+      NdiEmulatorSettings{.model = ndi_model_named(arguments.model).value_or(NdiModel::vega),
+                          .frame_rate_hz = arguments.rate_hz,
                           .clock_drift_ppm = arguments.drift_ppm,
                           .has_line = arguments.wire_time,
                           .noise = {.sigma_mm = arguments.noise_mm, .seed = arguments.seed},
@@ -110,6 +116,15 @@ void add_emulate(CLI::App& app, int& exit_code) {
                     "on a socket in the file system, such as a virtual machine's serial port connects to");
   where->require_option(1);
   tracker->add_option("--listen", arguments->listen, "IPv4 address for --tcp; this machine alone by default")
+      ->capture_default_str();
+  tracker
+      ->add_option("--link", arguments->link, "a symbolic link to the pseudo-terminal, for a name that stays")
+      ->excludes("--tcp");
+  tracker
+      ->add_option(
+          "--model", arguments->model,
+          "which device to play: what each knows differs (polaris: no GET, no BX2, at most 115200 baud)")
+      ->check(CLI::IsMember({"polaris", "spectra", "vega", "lyra", "aurora"}))
       ->capture_default_str();
   tracker->add_option("--rom", arguments->roms, "a tool definition that is plugged in from the start");
   tracker->add_option("--rate", arguments->rate_hz, "frames in a second")

@@ -49,6 +49,9 @@ class EmulatedPort {
   bool reported() const noexcept { return reported_; }
 
   void allocate() noexcept;
+  /// A tool with a plug, in the socket of that number (from 1); 0 for a wireless one.
+  void plug_into(int socket) noexcept { socket_ = socket; }
+  int socket() const noexcept { return socket_; }
   void release() noexcept { *this = EmulatedPort{}; }
   /// Refused outside the memory.
   NdiError write(std::size_t address, std::span<const std::byte> bytes) noexcept;
@@ -77,6 +80,7 @@ class EmulatedPort {
   std::array<std::byte, kMemoryBytes> memory_{};
   std::array<Eigen::Vector3d, kMaxToolMarkers> markers_mm_;
   std::size_t marker_count_ = 0;
+  int socket_ = 0;
   bool allocated_ = false;
   bool occupied_ = false;
   bool initialised_ = false;

@@ -16,6 +16,7 @@ constexpr std::uint32_t kLocation = 0x20;
 constexpr std::uint32_t kGpio = 0x40;
 
 constexpr std::size_t kRomBlockBytes = 64;
+constexpr std::uint16_t kPortUnoccupied = 0x0080;
 
 void put_basics(const EmulatedPort& port, WireText& reply) {
   reply.hex(port.byte_at(15), 2);  // main type
@@ -27,9 +28,12 @@ void put_basics(const EmulatedPort& port, WireText& reply) {
   reply.hex(port.status(), 2);
 }
 
-void put_location(std::size_t handle, WireText& reply) {
-  reply.text("P0-0000101");  // device, system, wireless tool
-  reply.hex(static_cast<std::uint32_t>(handle), 2);
+/// Device, kind of system, wired or wireless, port, channel.
+void put_location(const EmulatedPort& port, std::size_t handle, const EmulatedModel& model, WireText& reply) {
+  reply.text("P0-00001");
+  reply.text({&model.system_letter, 1});
+  reply.text(port.socket() > 0 ? "0" : "1");
+  reply.hex(static_cast<std::uint32_t>(port.socket() > 0 ? port.socket() : static_cast<int>(handle)), 2);
   reply.text("00");
 }
 
@@ -63,7 +67,10 @@ void NdiEmulator::suffer_tool_faults(Instant now) noexcept {
   for (std::size_t i = 0; i < kMaxPorts; ++i) {
     const auto tool = static_cast<std::int64_t>(i);
     if (ports_[i].enabled() && faults_.hits_tool(NdiFault::disabled, now, tool)) ports_[i].lose_enable();
-    if (ports_[i].occupied() && faults_.hits_tool(NdiFault::unplugged, now, tool)) ports_[i].unplug();
+    if (ports_[i].occupied() && faults_.hits_tool(NdiFault::unplugged, now, tool)) {
+      ports_[i].unplug();
+      port_events_ |= kPortUnoccupied;
+    }
   }
 }
 
@@ -72,6 +79,7 @@ bool NdiEmulator::plug_in(std::span<const std::byte> definition) noexcept {
       std::find_if(plugged_in_.begin(), plugged_in_.end(), [](const auto& port) { return !port.occupied(); });
   if (free == plugged_in_.end()) return false;
   free->allocate();
+  free->plug_into(static_cast<int>(free - plugged_in_.begin()) + 1);
   return free->write(0, definition) == NdiError::none;
 }
 
@@ -104,6 +112,7 @@ NdiError NdiEmulator::on_pvwr(std::string_view arguments, const Moment&) noexcep
 NdiError NdiEmulator::on_phsr(std::string_view arguments, const Moment&) noexcept {
   const auto question = parse_hex_field(arguments.empty() ? "00" : arguments);
   if (!question || *question > 4) return NdiError::out_of_range;
+  port_events_ = 0;
   const auto listed = [&](const EmulatedPort& port) { return is_listed(port, *question); };
   reply_.hex(static_cast<std::uint32_t>(std::count_if(ports_.begin(), ports_.end(), listed)), 2);
   for (std::size_t i = 0; i < kMaxPorts; ++i) {
@@ -129,7 +138,8 @@ NdiError NdiEmulator::on_phinf(std::string_view arguments, const Moment&) noexce
   if ((*options & kPartNumber) != 0) reply_.padded(port->text_at(592, 20), 20);
   if ((*options & kAccessories) != 0) reply_.text("00");
   if ((*options & kMarkerType) != 0) reply_.hex(port->byte_at(655), 2);
-  if ((*options & kLocation) != 0) put_location(static_cast<std::size_t>(port - ports_.data()) + 1, reply_);
+  if ((*options & kLocation) != 0)
+    put_location(*port, static_cast<std::size_t>(port - ports_.data()) + 1, model_, reply_);
   if ((*options & kGpio) != 0) reply_.text("00");
   return NdiError::none;
 }

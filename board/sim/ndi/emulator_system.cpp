@@ -6,9 +6,15 @@
 namespace orcart {
 namespace {
 
-constexpr std::string_view kVersion =
-    "orcart simulated Polaris\nNDI S/N: P0-00001\nCharacterization Date: 01/01/00\n"
-    "Freeze Tag: orcart emulator Rev 001\nFreeze Date: 01/01/00\n(C) orcart, Apache-2.0\n";
+/// As real devices lay it out, so that clients which look for a line find it.
+void put_version(const EmulatedModel& model, WireText& reply) noexcept {
+  reply.text(model.family);
+  reply.text(
+      " Control Firmware, simulated by orcart\nNDI S/N: P0-00001\nCharacterization Date: 01/01/00\nFreeze "
+      "Tag: ");
+  reply.text(model.firmware);
+  reply.text("\nFreeze Date: 01/01/00\n(C) orcart, Apache-2.0\n");
+}
 
 std::uint32_t baud_of_code(char code) noexcept {
   constexpr std::array<std::uint32_t, 8> kBauds{9600, 14400, 19200, 38400, 57600, 115200, 921600, 1228739};
@@ -36,7 +42,7 @@ NdiError NdiEmulator::on_comm(std::string_view arguments, const Moment&) noexcep
   const std::uint32_t baud = baud_of_code(arguments[0]);
   const bool known = within(arguments[1], '1') && within(arguments[2], '2') && within(arguments[3], '1') &&
                      within(arguments[4], '1');
-  if (baud == 0 || !known) return NdiError::line_setting;
+  if (baud == 0 || baud > model_.fastest_baud || !known) return NdiError::line_setting;
   next_baud_ = baud;
   return okay();
 }
@@ -45,7 +51,7 @@ NdiError NdiEmulator::on_ver(std::string_view arguments, const Moment&) noexcept
   if (arguments == "5") {
     reply_.text("001");
   } else if (arguments.size() == 1 && within(arguments[0], '8')) {
-    reply_.text(kVersion);
+    put_version(model_, reply_);
   } else {
     return arguments.empty() ? NdiError::wrong_parameters : NdiError::out_of_range;
   }
@@ -53,7 +59,7 @@ NdiError NdiEmulator::on_ver(std::string_view arguments, const Moment&) noexcept
 }
 
 NdiError NdiEmulator::on_apirev(std::string_view, const Moment&) noexcept {
-  reply_.text("G.003.007");
+  reply_.text(model_.api_revision);
   return NdiError::none;
 }
 
@@ -93,22 +99,42 @@ NdiError NdiEmulator::on_sstat(std::string_view arguments, const Moment&) noexce
   return NdiError::none;
 }
 
+void NdiEmulator::refresh_parameters() noexcept {
+  parameters_.assign("Info.Status.Alerts", self_report_.standing());
+  parameters_.assign("Info.Status.New Alerts", self_report_.unread());
+  parameters_.assign("Info.Status.Bump Detected", self_report_.bumped() ? 1 : 0);
+  parameters_.assign("Param.Bump Detector.Bumped", self_report_.bumped() ? 1 : 0);
+}
+
 NdiError NdiEmulator::on_get(std::string_view arguments, const Moment&) noexcept {
+  refresh_parameters();
+  if (arguments == "Info.Status.New Alerts") self_report_.read();  // told once
   return parameters_.get(arguments, reply_);
 }
 
 NdiError NdiEmulator::on_getinfo(std::string_view arguments, const Moment&) noexcept {
+  refresh_parameters();
   return parameters_.describe(arguments, reply_);
 }
 
 NdiError NdiEmulator::on_set(std::string_view arguments, const Moment&) noexcept {
   const NdiError error = parameters_.set(arguments);
-  return error != NdiError::none ? error : okay();
+  if (error != NdiError::none) return error;
+  if (arguments.starts_with("Param.Simulated Alerts="))
+    self_report_.simulate(static_cast<std::uint32_t>(parameters_.value("Param.Simulated Alerts")));
+  if (arguments == "Param.Bump Detector.Clear=1") self_report_.clear_bump();
+  return okay();
 }
 
-NdiError NdiEmulator::on_beep(std::string_view arguments, const Moment&) noexcept {
+NdiError NdiEmulator::on_beep(std::string_view arguments, const Moment& moment) noexcept {
+  constexpr Nanos kBeep = 200ms;
   if (arguments.size() != 1 || arguments[0] < '1' || arguments[0] > '9') return NdiError::out_of_range;
-  reply_.text("1");
+  const bool busy = moment.now < beeping_until_;
+  reply_.text(busy ? "0" : "1");
+  if (busy) return NdiError::none;
+  const int beeps = arguments[0] - '0';
+  beeps_heard_ += static_cast<std::uint64_t>(beeps);
+  beeping_until_ = moment.now + beeps * kBeep;
   return NdiError::none;
 }
 

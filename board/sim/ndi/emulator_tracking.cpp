@@ -72,7 +72,12 @@ NdiEmulator::Moment NdiEmulator::moment_at(Instant now) const noexcept {
 }
 
 std::uint16_t NdiEmulator::system_status(Instant now) const noexcept {
-  return faults_.active(NdiFault::infrared, now, replies_sent_) != nullptr ? 0x0002 : 0;
+  constexpr std::uint16_t kInfrared = 0x0002, kAlertsPending = 0x0100;
+  std::uint16_t status = port_events_;
+  if (faults_.active(NdiFault::infrared, now, replies_sent_) != nullptr) status |= kInfrared;
+  // A bit of the generation that has parameters to ask for the alerts with.
+  if (model_.has_parameters && self_report_.unread() != 0) status |= kAlertsPending;
+  return status;
 }
 
 NdiEmulator::ToolReading NdiEmulator::reading_of(std::size_t port, const Moment& moment) const noexcept {
@@ -187,13 +192,15 @@ NdiError NdiEmulator::on_bx(std::string_view arguments, const Moment& moment) no
 void NdiEmulator::put_six_d(const Moment& moment) noexcept {
   constexpr std::uint32_t kMissing = 0x0100 | 31;
   constexpr std::uint32_t kNotEnabled = 0x0100 | 32;
+  constexpr std::uint32_t kUnplugged = 0x0100 | 33;
   const std::size_t size_at = begin_component(2, reported_ports(), reply_);
   for (std::size_t i = 0; i < kMaxPorts; ++i) {
     if (!ports_[i].reported()) continue;
     const ToolReading tool = reading_of(i, moment);
     reply_.u16(tool.handle);
     if (tool.disabled || tool.missing) {
-      reply_.u16(tool.disabled ? kNotEnabled : kMissing);
+      const std::uint32_t disabled = ports_[i].occupied() ? kNotEnabled : kUnplugged;
+      reply_.u16(tool.disabled ? disabled : kMissing);
     } else {
       reply_.u16(0);
       put_floats(tool.fit, reply_);
@@ -221,6 +228,12 @@ void NdiEmulator::put_three_d(const Moment& moment) noexcept {
   end_component(size_at, reply_);
 }
 
+void NdiEmulator::put_alerts() noexcept {
+  const std::size_t size_at = begin_component(0x12, self_report_.count(), reply_);
+  self_report_.put_items(reply_);
+  end_component(size_at, reply_);
+}
+
 NdiError NdiEmulator::on_bx2(std::string_view arguments, const Moment& moment) noexcept {
   constexpr std::uint32_t kGbfVersion = 1;
   constexpr std::uint32_t kPassiveFrame = 2;
@@ -242,9 +255,11 @@ NdiError NdiEmulator::on_bx2(std::string_view arguments, const Moment& moment) n
   reply_.u32(static_cast<std::uint32_t>(stamp / 1'000'000'000));
   reply_.u32(static_cast<std::uint32_t>(stamp % 1'000'000'000));
   reply_.u16(kGbfVersion);
-  reply_.u16((six_d ? 1u : 0u) + (three_d ? 1u : 0u));
+  const bool alerts = self_report_.count() > 0;
+  reply_.u16((six_d ? 1u : 0u) + (three_d ? 1u : 0u) + (alerts ? 1u : 0u));
   if (six_d) put_six_d(moment);
   if (three_d) put_three_d(moment);
+  if (alerts) put_alerts();
   end_component(size_at, reply_);
   return NdiError::none;
 }

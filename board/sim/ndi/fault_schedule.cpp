@@ -19,6 +19,9 @@ constexpr auto kNames = std::to_array<std::pair<std::string_view, NdiFault>>({
     {"disabled", NdiFault::disabled},
     {"unplugged", NdiFault::unplugged},
     {"reset", NdiFault::reset},
+    {"bump", NdiFault::bump},
+    {"alert", NdiFault::alert},
+    {"cut", NdiFault::cut},
 });
 
 bool open_at(const NdiFaultWindow& window, Instant now) {
@@ -57,13 +60,14 @@ bool NdiFaultSchedule::hits_tool(NdiFault fault, Instant now, std::int64_t tool)
   return false;
 }
 
-bool NdiFaultSchedule::take_reset(Instant now) noexcept {
+std::optional<NdiFaultWindow> NdiFaultSchedule::take_due(NdiFault fault, Instant now) noexcept {
   for (std::size_t i = 0; i < count_; ++i) {
-    if (windows_[i].fault != NdiFault::reset || windows_[i].from > now) continue;
+    if (windows_[i].fault != fault || windows_[i].from > now) continue;
+    const NdiFaultWindow due = windows_[i];
     windows_[i] = windows_[--count_];
-    return true;
+    return due;
   }
-  return false;
+  return std::nullopt;
 }
 
 Instant NdiFaultSchedule::next_reset() const noexcept {

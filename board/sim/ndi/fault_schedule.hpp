@@ -23,6 +23,9 @@ enum class NdiFault : std::uint8_t {
   disabled,      ///< the tool of index `amount` is no longer enabled
   unplugged,     ///< the tool of index `amount` is no longer in its port
   reset,         ///< the device restarts once, at the beginning of the window
+  bump,          ///< the sensor is knocked once, at the beginning of the window
+  alert,         ///< the alert of bit `amount` is raised once, at the beginning of the window
+  cut,           ///< the cable is out: served ports close and open again
 };
 
 /// The word for it on a command line; nothing where there is no such fault.
@@ -48,8 +51,8 @@ class NdiFaultSchedule {
   const NdiFaultWindow* active(NdiFault fault, Instant now, std::uint64_t reply) const noexcept;
   /// Whether a window of that fault for the tool `amount` is open at `now`.
   bool hits_tool(NdiFault fault, Instant now, std::int64_t tool) const noexcept;
-  /// Takes the reset that is due at `now` off the table, so that each happens once.
-  bool take_reset(Instant now) noexcept;
+  /// Takes the fault that is due at `now` off the table, so that each happens once.
+  std::optional<NdiFaultWindow> take_due(NdiFault fault, Instant now) noexcept;
   /// When the next reset is due; Instant::max() where none is.
   Instant next_reset() const noexcept;
 

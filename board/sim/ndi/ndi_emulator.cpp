@@ -17,7 +17,9 @@ constexpr Nanos kSwitchAfter = 5ms;
 NdiEmulator::NdiEmulator(const NdiEmulatorSettings& settings, const ToolMotion& motion)
     : settings_(settings),
       motion_(motion),
-      clock_(settings.on_at, settings.frame_phase, settings.frame_rate_hz, settings.clock_drift_ppm) {}
+      clock_(settings.on_at, settings.frame_phase, settings.frame_rate_hz, settings.clock_drift_ppm),
+      model_(description_of(settings.model)),
+      parameters_(model_, settings.frame_rate_hz) {}
 
 std::span<const NdiEmulator::Verb> NdiEmulator::verbs() noexcept {
   using E = NdiEmulator;
@@ -103,7 +105,7 @@ NdiError NdiEmulator::dispatch(const CommandLine& command, const Moment& moment)
   const auto all = verbs();
   const auto verb =
       std::find_if(all.begin(), all.end(), [&](const Verb& v) { return v.name == command.name; });
-  if (verb == all.end()) return NdiError::invalid_command;
+  if (verb == all.end() || !model_.knows(command.name)) return NdiError::invalid_command;
   const NdiError objection = objection_to(verb->mode);
   return objection != NdiError::none ? objection : (this->*verb->handler)(command.arguments, moment);
 }
@@ -163,7 +165,8 @@ void NdiEmulator::restart(Instant now) noexcept {
   line_size_ = 0;
   line_too_long_ = false;
   for (EmulatedPort& port : ports_) port.release();
-  parameters_ = UserParameters{};
+  parameters_ = UserParameters(model_, settings_.frame_rate_hz);
+  port_events_ = 0;
   initialised_ = tracking_ = false;
   baud_ = next_baud_ = 9600;
   frame_zero_ = last_bx2_frame_ = 0;
@@ -175,7 +178,10 @@ void NdiEmulator::restart(Instant now) noexcept {
 }
 
 void NdiEmulator::catch_up(Instant now) noexcept {
-  if (faults_.take_reset(now)) restart(now);
+  if (faults_.take_due(NdiFault::reset, now)) restart(now);
+  if (faults_.take_due(NdiFault::bump, now)) self_report_.raise(SelfReport::kBump);
+  if (const auto alert = faults_.take_due(NdiFault::alert, now))
+    self_report_.raise(1u << std::clamp<std::int64_t>(alert->amount, 0, 31));
   if (now >= switch_at_) baud_ = next_baud_;
 }
 

@@ -10,9 +10,11 @@
 
 #include "board/sim/ndi/command_line.hpp"
 #include "board/sim/ndi/device_clock.hpp"
+#include "board/sim/ndi/emulated_model.hpp"
 #include "board/sim/ndi/emulated_port.hpp"
 #include "board/sim/ndi/fault_schedule.hpp"
 #include "board/sim/ndi/reply_queue.hpp"
+#include "board/sim/ndi/self_report.hpp"
 #include "board/sim/ndi/user_parameters.hpp"
 #include "board/sim/ndi/wire_text.hpp"
 #include "board/sim/tool_motion.hpp"
@@ -21,6 +23,7 @@
 namespace orcart {
 
 struct NdiEmulatorSettings {
+  NdiModel model = NdiModel::vega;
   double frame_rate_hz = 60;
   double clock_drift_ppm = 0;     ///< of the device's clock against the host's
   Nanos frame_phase = 3ms;        ///< first frame after switching on
@@ -63,6 +66,7 @@ class NdiEmulator {
   const DeviceClock& device_clock() const noexcept { return clock_; }
   NdiFaultSchedule& faults() noexcept { return faults_; }
   std::uint64_t replies_sent() const noexcept { return replies_sent_; }
+  std::uint64_t beeps_heard() const noexcept { return beeps_heard_; }
 
  private:
   /// What a handler may need to know about the moment.
@@ -135,6 +139,8 @@ class NdiEmulator {
   ToolReading reading_of(std::size_t port, const Moment& moment) const noexcept;
   std::uint32_t frame_number(std::uint32_t frame) const noexcept { return frame - frame_zero_; }
   std::uint16_t system_status(Instant now) const noexcept;
+  void refresh_parameters() noexcept;
+  void put_alerts() noexcept;
   Moment moment_at(Instant now) const noexcept;
   void put_tx_tool(const ToolReading& tool, std::size_t port, std::uint16_t options,
                    const Moment& moment) noexcept;
@@ -149,7 +155,10 @@ class NdiEmulator {
   NdiFaultSchedule faults_;
   std::array<EmulatedPort, kMaxPorts> ports_;
   std::array<EmulatedPort, 4> plugged_in_;
+  const EmulatedModel& model_;
   UserParameters parameters_;
+  SelfReport self_report_;
+  std::uint16_t port_events_ = 0;  ///< of system status: a port became occupied or unoccupied; until asked
   ReplyQueue replies_;
   WireText reply_;
   bool binary_reply_ = false;
@@ -168,6 +177,8 @@ class NdiEmulator {
   std::uint32_t frame_zero_ = 0;
   std::uint32_t last_bx2_frame_ = 0;
   std::uint64_t replies_sent_ = 0;
+  std::uint64_t beeps_heard_ = 0;
+  Instant beeping_until_{};
 };
 
 }  // namespace orcart

@@ -105,6 +105,63 @@ TEST(RealLinks, CarryTheDriverOverTcp) {
   EXPECT_EQ(frames_over(rig.link(), 0), 20);
 }
 
+/// Serves an emulator whose cable is out from half a second to one second after its start.
+class CutTracker {
+ public:
+  explicit CutTracker(std::unique_ptr<EmulatorPort> port) : name(port->name()), port_(std::move(port)) {
+    const Instant now = RealClock{}.now();
+    device_.faults().add({.fault = NdiFault::cut, .from = now + 500ms, .until = now + 1s});
+    thread_ = std::thread([this] {
+      EmulatorServer server(device_, *port_);
+      while (!stop_.load(std::memory_order_relaxed)) server.step(2ms);
+    });
+  }
+  ~CutTracker() {
+    stop_.store(true, std::memory_order_relaxed);
+    thread_.join();
+  }
+  const std::string name;
+
+ private:
+  CirclingTools motion_;
+  NdiEmulator device_{{.has_line = false, .on_at = RealClock{}.now()}, motion_};
+  std::unique_ptr<EmulatorPort> port_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+/// Whether the driver lost the tracker and had it again with both tools, within ten seconds.
+bool comes_back_over(ByteLink& link, std::uint32_t baud) {
+  RealClock clock;
+  NdiDriver driver(two_tools(baud), link);
+  const Instant end = clock.now() + 10s;
+  bool lost = false;
+  while (clock.now() < end) {
+    link.wait(std::min(end, driver.next_due()));
+    const DriverReport report = driver.step(clock.now());
+    lost = lost || report.health == TrackerHealth::lost;
+    if (lost && report.new_reply && driver.reply().tools[1].state == ToolState::seen) return true;
+  }
+  return false;
+}
+
+TEST(RealLinks, ComeBackAfterTheCableOfAPseudoTerminalWasOut) {
+  const std::string link = ::testing::TempDir() + "orcart-cut-tty";
+  CutTracker tracker(open_pseudo_terminal(link).value());
+  EXPECT_EQ(tracker.name, link);
+  const auto tty = TtyLink::open(link);
+  ASSERT_TRUE(tty) << tty.error().message;
+  EXPECT_TRUE(comes_back_over(**tty, 921600));
+}
+
+TEST(RealLinks, ComeBackAfterTheNetworkCableWasOut) {
+  CutTracker tracker(open_tcp_port({.port = 0}).value());
+  const auto port = static_cast<std::uint16_t>(std::stoi(tracker.name.substr(tracker.name.find(':') + 1)));
+  const auto tcp = TcpLink::open({.host = "127.0.0.1", .port = port});
+  ASSERT_TRUE(tcp) << tcp.error().message;
+  EXPECT_TRUE(comes_back_over(**tcp, 0));
+}
+
 TEST(UnixPort, ServesOneClientAfterTheOther) {
   const std::string file = ::testing::TempDir() + "emulated-tracker-" + std::to_string(::getpid());
   const ServedTracker served(open_unix_port(file).value());

@@ -83,7 +83,7 @@ TEST(NdiEmulator, TakesACommandInPiecesAndSeveralAtOnce) {
   const std::string command = "INIT:E3A5\r";
   for (std::size_t i = 0; i + 1 < command.size(); ++i) EXPECT_EQ(session.raw(command.substr(i, 1)), "");
   EXPECT_EQ(session.raw("\r"), "OKAYA896\r");
-  EXPECT_EQ(session.raw("BEEP 1\rBEEP 2\r"), "1D4C1\r1D4C1\r");
+  EXPECT_EQ(session.raw("BEEP 1\rBEEP 2\r"), "1D4C1\r01400\r") << "0: it still beeps";
 }
 
 TEST(NdiEmulator, LeadsAToolThroughItsLife) {
@@ -189,6 +189,67 @@ TEST(NdiEmulator, SurvivesAnyBytes) {
   }
   session.raw("\r");
   EXPECT_EQ(session.raw("INIT:E3A5\r"), "OKAYA896\r");
+}
+
+TEST(NdiEmulator, KnowsNoMoreThanTheModelItPlays) {
+  EmulatedSession polaris({.model = NdiModel::polaris, .has_line = false});
+  polaris.ask("INIT:");
+  EXPECT_EQ(polaris.ask("GET:Features.Firmware.Version"), "ERROR01");
+  EXPECT_EQ(polaris.ask("APIREV:"), "ERROR01");
+  EXPECT_EQ(polaris.ask("BX2:--6d=tools"), "ERROR01");
+  EXPECT_EQ(polaris.ask("COMM:60000"), "ERROR06") << "115200 is its fastest";
+  EXPECT_TRUE(polaris.ask("VER:4").starts_with("Polaris Control Firmware"));
+  EmulatedSession aurora({.model = NdiModel::aurora, .has_line = false});
+  aurora.ask("INIT:");
+  EXPECT_EQ(aurora.ask("PHRQ:*********1****"), "ERROR01") << "all its tools have plugs";
+  EmulatedSession vega;
+  EXPECT_EQ(vega.ask("APIREV:"), "G.003.007");
+  EXPECT_EQ(vega.ask("GET:Features.Hardware.Model"), "Features.Hardware.Model=Polaris Vega");
+}
+
+TEST(NdiEmulator, TellsWhereAToolIsPluggedIn) {
+  EmulatedSession session({.model = NdiModel::aurora, .has_line = false});
+  session.device.plug_in(definition_of(kMarkers));
+  session.device.plug_in(definition_of(kMarkers));
+  session.ask("INIT:");
+  EXPECT_EQ(session.ask("PHSR:02"),
+            "0201001"
+            "02001");
+  EXPECT_EQ(session.ask("PHINF:020020"), "P0-00001100200");
+}
+
+TEST(NdiEmulator, SaysThatItWasBumpedUntilItIsCleared) {
+  TrackingSession session;
+  EXPECT_EQ(session.ask("GET:Info.Status.Bump Detected"), "Info.Status.Bump Detected=0");
+  session.device.faults().add({.fault = NdiFault::bump, .from = session.now + 1ms});
+  session.now += 10ms;
+  const std::string reply = session.ask("TX:0001");
+  EXPECT_EQ(reply.substr(reply.size() - 4), "0100") << "alerts are pending";
+  EXPECT_EQ(session.ask("GET:Info.Status.New Alerts"), "Info.Status.New Alerts=2097152");
+  EXPECT_EQ(session.ask("GET:Info.Status.New Alerts"), "Info.Status.New Alerts=0") << "told once";
+  EXPECT_EQ(session.ask("GET:Info.Status.Bump Detected"), "Info.Status.Bump Detected=1");
+  EXPECT_NE(session.ask("BX2:--6d=tools").find(std::string("\x01\x00\x02\x00", 4)), std::string::npos);
+  EXPECT_EQ(session.ask("SET:Param.Bump Detector.Clear=1"), "OKAY");
+  EXPECT_EQ(session.ask("GET:Info.Status.Alerts"), "Info.Status.Alerts=0");
+}
+
+TEST(NdiEmulator, SimulatesAlertsAsARealVegaDoes) {
+  EmulatedSession session;
+  session.ask("INIT:");
+  EXPECT_EQ(session.ask("SET:Param.Simulated Alerts=16"), "OKAY");
+  EXPECT_EQ(session.ask("GET:Info.Status.Alerts"), "Info.Status.Alerts=16");
+  EXPECT_TRUE(session.ask("GETINFO:Param.Simulated Alerts").starts_with("Param.Simulated Alerts=16;1;2;0;"));
+}
+
+TEST(NdiEmulator, SaysThatAPortHasLostItsToolUntilPortsAreListed) {
+  TrackingSession session;
+  session.device.faults().add({.fault = NdiFault::unplugged, .from = session.now, .amount = 0});
+  session.ask("TX:0001");
+  const std::string reply = session.ask("TX:0001");
+  EXPECT_EQ(reply.substr(reply.size() - 4), "0080");
+  session.ask("PHSR:00");
+  const std::string after = session.ask("TX:0001");
+  EXPECT_EQ(after.substr(after.size() - 4), "0000");
 }
 
 }  // namespace
