@@ -34,10 +34,12 @@ constexpr std::optional<char> code_of_baud(std::uint32_t baud) noexcept {
   return std::nullopt;
 }
 
-/// The fastest rate below `baud`, or nothing below the slowest.
+/// The fastest rate below `baud`, or nothing below the slowest. Passes over 14400 and 19200: few host drivers
+/// have the first, and NDI's USB converters take the second for 1.2 Mbaud.
 constexpr std::optional<std::uint32_t> next_slower(std::uint32_t baud) noexcept {
   for (std::size_t i = kBaudCodes.size(); i-- > 0;) {
-    if (kBaudCodes[i].baud < baud) return kBaudCodes[i].baud;
+    const bool avoided = kBaudCodes[i].baud == 14'400 || kBaudCodes[i].baud == 19'200;
+    if (kBaudCodes[i].baud < baud && !avoided) return kBaudCodes[i].baud;
   }
   return std::nullopt;
 }

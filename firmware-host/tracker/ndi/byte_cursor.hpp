@@ -21,6 +21,12 @@ class ByteCursor {
     ok_ = ok_ && count <= left();
     at_ = ok_ ? at_ + count : bytes_.size();
   }
+  /// The next `count` bytes; empty where there are fewer.
+  std::span<const std::byte> take(std::size_t count) noexcept {
+    const std::size_t from = at_;
+    skip(count);
+    return ok_ ? bytes_.subspan(from, count) : std::span<const std::byte>{};
+  }
   std::size_t left() const noexcept { return bytes_.size() - at_; }
   bool ok() const noexcept { return ok_; }
 

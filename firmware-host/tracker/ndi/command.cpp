@@ -2,6 +2,7 @@
 #include "firmware-host/tracker/ndi/command.hpp"
 
 #include <algorithm>
+#include <charconv>
 
 #include "firmware-host/tracker/ndi/hex.hpp"
 #include "realtime/base/crc16.hpp"
@@ -83,6 +84,49 @@ Command describe_port(std::uint8_t handle, std::uint16_t options) noexcept {
 
 Command start_tracking() noexcept {
   return {"TSTART", ""};
+}
+
+Command stop_tracking() noexcept {
+  return {"TSTOP", ""};
+}
+
+Command poll_text(std::uint16_t options) noexcept {
+  return {"TX", HexArguments<4>(options).text()};
+}
+
+Command poll_frames() noexcept {
+  return {"BX2", "--6d=tools --3d=none --sensor=none --1d=none", ReplyKind::binary};
+}
+
+Command beep(int times) noexcept {
+  const char digit = static_cast<char>('0' + std::clamp(times, 1, 9));
+  return {"BEEP", {&digit, 1}};
+}
+
+Command ask_api_revision() noexcept {
+  return {"APIREV", ""};
+}
+
+Command ask_version() noexcept {
+  return {"VER", "0"};
+}
+
+Command get_parameter(std::string_view name) noexcept {
+  return {"GET", name};
+}
+
+Command set_parameter(std::string_view name, std::uint32_t value) noexcept {
+  std::array<char, 120> assignment{};
+  if (name.size() + 12 > assignment.size()) return {};
+  char* end = std::copy(name.begin(), name.end(), assignment.data());
+  *end++ = '=';
+  end = std::to_chars(end, assignment.data() + assignment.size(), value).ptr;
+  return {"SET", {assignment.data(), static_cast<std::size_t>(end - assignment.data())}};
+}
+
+Command set_illuminator_rate(int code) noexcept {
+  const char digit = static_cast<char>('0' + std::clamp(code, 0, 2));
+  return {"IRATE", {&digit, 1}};
 }
 
 Command poll_binary(std::uint16_t options) noexcept {

@@ -35,6 +35,7 @@ inline constexpr std::uint16_t kPassiveStrays = 0x1000;
 /// Options of PHINF; they add up.
 inline constexpr std::uint16_t kPortBasics = 0x0001;
 inline constexpr std::uint16_t kPartNumber = 0x0004;
+inline constexpr std::uint16_t kPortLocation = 0x0020;
 
 /// A tool definition is uploaded in blocks of this size into a memory of kRomMemoryBytes.
 inline constexpr std::size_t kRomBlockBytes = 64;
@@ -76,6 +77,19 @@ Command enable_port(std::uint8_t handle, TrackingPriority priority) noexcept;
 Command free_port(std::uint8_t handle) noexcept;
 Command describe_port(std::uint8_t handle, std::uint16_t options) noexcept;
 Command start_tracking() noexcept;
+Command stop_tracking() noexcept;
+Command poll_text(std::uint16_t options) noexcept;
 Command poll_binary(std::uint16_t options) noexcept;
+/// BX2 with the tools' poses and alerts alone.
+Command poll_frames() noexcept;
+/// 1 to 9 times; allowed while tracking. The reply is 0 while it still beeps.
+Command beep(int times) noexcept;
+Command ask_api_revision() noexcept;
+/// VER, for devices that know no parameters.
+Command ask_version() noexcept;
+Command get_parameter(std::string_view name) noexcept;
+Command set_parameter(std::string_view name, std::uint32_t value) noexcept;
+/// The rate of the oldest devices: 0 is 20 Hz, 1 is 30 Hz, 2 is 60 Hz.
+Command set_illuminator_rate(int code) noexcept;
 
 }  // namespace orcart::ndi

@@ -12,14 +12,19 @@
 namespace orcart::ndi {
 namespace {
 
-constexpr std::size_t kMaxMessageBytes = 65536;
+constexpr std::size_t kMaxMessageBytes = 1u << 20;
 
 struct Heading {
   Speaker speaker = Speaker::host;
   int number = 0;
+  std::size_t begin = 0;  ///< where its number, or its word, stands
   std::size_t length = 0;
   std::size_t end = 0;  ///< where the message begins
 };
+
+bool is_digit(char letter) {
+  return letter >= '0' && letter <= '9';
+}
 
 std::optional<int> read_int(std::string_view digits) {
   int value = 0;
@@ -28,24 +33,37 @@ std::optional<int> read_int(std::string_view digits) {
                                                                                     : std::nullopt;
 }
 
-/// The next `N. command[len] ` or `N. receive[len] ` at or behind `from`.
+/// Where the number in front of `at` begins (`12. `), and what it is; 0 where there is none.
+int number_before(std::string_view text, std::size_t from, std::size_t& at) {
+  if (at < from + 3 || text[at - 1] != ' ' || text[at - 2] != '.' || !is_digit(text[at - 3])) return 0;
+  std::size_t first = at - 2;
+  while (first > from && is_digit(text[first - 1])) --first;
+  const int number = read_int(text.substr(first, at - 2 - first)).value_or(0);
+  at = first;
+  return number;
+}
+
+/// The next `N. command[len] ` or `N. receive[len] ` at or behind `from`; the number may be missing.
 std::optional<Heading> next_heading(std::string_view text, std::size_t from) {
-  constexpr std::string_view kCommand = ". command[";
-  constexpr std::string_view kReceive = ". receive[";
-  for (std::size_t dot = text.find(". ", from); dot != std::string_view::npos;
-       dot = text.find(". ", dot + 1)) {
-    const std::string_view rest = text.substr(dot);
-    if (!rest.starts_with(kCommand) && !rest.starts_with(kReceive)) continue;
-    const std::size_t open = dot + kCommand.size();
-    const std::size_t close = text.find("] ", open);
-    std::size_t first = dot;
-    while (first > from && text[first - 1] >= '0' && text[first - 1] <= '9') --first;
-    const auto number = read_int(text.substr(first, dot - first));
-    const auto length =
-        close == std::string_view::npos ? std::nullopt : read_int(text.substr(open, close - open));
-    if (!number || !length || static_cast<std::size_t>(*length) > kMaxMessageBytes) continue;
-    const Speaker speaker = rest.starts_with(kCommand) ? Speaker::host : Speaker::device;
-    return Heading{speaker, *number, static_cast<std::size_t>(*length), close + 2};
+  constexpr std::string_view kCommand = "command[";
+  constexpr std::string_view kReceive = "receive[";
+  for (std::size_t open = text.find('[', from); open != std::string_view::npos;
+       open = text.find('[', open + 1)) {
+    if (open < from + kCommand.size() - 1) continue;
+    const std::size_t word = open + 1 - kCommand.size();
+    const bool sent = text.substr(word).starts_with(kCommand);
+    if (!sent && !text.substr(word).starts_with(kReceive)) continue;
+    const std::size_t close = text.find(']', open);
+    if (close == std::string_view::npos || close - open > 8) continue;
+    const auto length = read_int(text.substr(open + 1, close - open - 1));
+    if (!length || static_cast<std::size_t>(*length) > kMaxMessageBytes) continue;
+    Heading heading{.speaker = sent ? Speaker::host : Speaker::device,
+                    .begin = word,
+                    .length = static_cast<std::size_t>(*length),
+                    .end = close + 1};
+    if (heading.end < text.size() && text[heading.end] == ' ') ++heading.end;
+    heading.number = number_before(text, from, heading.begin);
+    return heading;
   }
   return std::nullopt;
 }
@@ -69,13 +87,21 @@ std::string without_escapes(std::string_view line) {
   return bytes;
 }
 
+std::string_view without_line_end(std::string_view line) {
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
 Dialogue parse_log(std::string_view text) {
   Dialogue records;
   for (auto heading = next_heading(text, 0); heading; heading = next_heading(text, heading->end)) {
     std::string_view line = text.substr(heading->end);
-    line = line.substr(0, line.find('\n'));
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    records.push_back({heading->speaker, heading->number, without_escapes(line)});
+    const bool last = line.find('\n') == std::string_view::npos;
+    line = without_line_end(line.substr(0, line.find('\n')));
+    DialogueRecord record{heading->speaker, heading->number, without_escapes(line)};
+    record.cut_off = last && record.bytes.size() < heading->length;
+    heading->end += line.size();
+    records.push_back(std::move(record));
   }
   return records;
 }
@@ -87,46 +113,75 @@ void restore_carriage_return(std::string& bytes) {
   if (is_text) bytes.back() = '\r';
 }
 
+/// Where a message of the stated length ends. Where no record follows there but one begins inside, the length
+/// is not to be believed (line ends were changed on the way): then the message is what stands in front of
+/// that record.
+std::size_t end_of_message(std::string_view text, const Heading& heading) {
+  const std::size_t end = std::min(text.size(), heading.end + heading.length);
+  const auto next = next_heading(text, heading.end);
+  if (!next || next->begin >= end) return end;
+  const auto behind = next_heading(text, end);
+  const bool follows = behind && text.find_first_not_of("\r\n ", end) == behind->begin;
+  return follows ? end : next->begin;
+}
+
 Dialogue parse_raw(std::string_view text) {
   Dialogue records;
   for (auto heading = next_heading(text, 0); heading;) {
-    const std::size_t end = std::min(text.size(), heading->end + heading->length);
-    std::string bytes(text.substr(heading->end, end - heading->end));
-    restore_carriage_return(bytes);
-    records.push_back({heading->speaker, heading->number, std::move(bytes)});
+    const std::size_t end = end_of_message(text, *heading);
+    DialogueRecord record{heading->speaker, heading->number,
+                          std::string(text.substr(heading->end, end - heading->end))};
+    record.cut_off = end == text.size() && record.bytes.size() < heading->length;
+    restore_carriage_return(record.bytes);
+    records.push_back(std::move(record));
     heading = next_heading(text, end);
   }
   return records;
 }
 
+/// `sent:N = ` or `recv:N = ` on a line, behind whatever a program put in front.
+std::optional<Heading> turn_on(std::string_view line) {
+  for (const bool sent : {true, false}) {
+    const std::size_t word = line.find(sent ? "sent:" : "recv:");
+    if (word == std::string_view::npos) continue;
+    const std::size_t equals = line.find(" =", word);
+    if (equals == std::string_view::npos) continue;
+    const auto number = read_int(line.substr(word + 5, equals - word - 5));
+    if (!number) continue;
+    Heading turn{.speaker = sent ? Speaker::host : Speaker::device,
+                 .number = *number,
+                 .begin = word,
+                 .end = equals + 2};
+    if (turn.end < line.size() && line[turn.end] == ' ') ++turn.end;
+    return turn;
+  }
+  return std::nullopt;
+}
+
 Dialogue parse_sent_and_received(std::string_view text) {
   Dialogue records;
-  bool open = false;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
+    const std::string_view line = without_line_end(text.substr(0, end));
+    const bool last = end == text.size();
     text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    const bool sent = line.starts_with("sent:");
-    const std::size_t equals = line.find(" = ");
-    if ((sent || line.starts_with("recv:")) && equals != std::string_view::npos) {
-      const int number = read_int(line.substr(5, equals - 5)).value_or(0);
-      records.push_back(
-          {sent ? Speaker::host : Speaker::device, number, std::string(line.substr(equals + 3))});
-      open = true;
-    } else if (open && !line.empty()) {
+    if (const auto turn = turn_on(line)) {
+      records.push_back({turn->speaker, turn->number, std::string(line.substr(turn->end)), last});
+    } else if (!records.empty() && !line.empty()) {
       records.back().bytes += '\n';
       records.back().bytes += line;
+      records.back().cut_off = last;
     }
   }
   for (DialogueRecord& record : records) {
-    if (!record.bytes.empty()) record.bytes += '\r';
+    if (record.bytes.find("\\x") != std::string::npos) record.bytes = without_escapes(record.bytes);
+    if (!record.bytes.empty() && !record.bytes.ends_with('\r')) record.bytes += '\r';
   }
   return records;
 }
 
 bool begins_binary(std::string_view bytes) {
-  return bytes.starts_with("\xC4\xA5");
+  return bytes.starts_with("\xC4\xA5") || bytes.starts_with("\xC8\xA5");
 }
 
 /// A binary reply may have been recorded as header and body.
@@ -139,6 +194,7 @@ Dialogue with_replies_whole(Dialogue records) {
                          begins_binary(whole.back().bytes) && !begins_binary(record.bytes);
     if (goes_on) {
       whole.back().bytes += record.bytes;
+      whole.back().cut_off = record.cut_off;
     } else {
       whole.push_back(std::move(record));
     }
@@ -146,17 +202,17 @@ Dialogue with_replies_whole(Dialogue records) {
   return whole;
 }
 
+/// Escapes are what tells a log from the raw notation: a carriage return cannot stand in it otherwise.
+bool is_escaped(std::string_view content) {
+  return content.find("\\x0D") != std::string_view::npos || content.find("\\x0d") != std::string_view::npos;
+}
+
 }  // namespace
 
 Result<Dialogue> parse_dialogue(std::string_view content, std::string_view name) {
-  Dialogue records;
-  if (content.find("sent:") != std::string_view::npos && content.find("recv:") != std::string_view::npos) {
-    records = parse_sent_and_received(content);
-  } else if (content.find("\\x0D") != std::string_view::npos) {
-    records = parse_log(content);
-  } else {
-    records = parse_raw(content);
-  }
+  Dialogue records = is_escaped(content) ? parse_log(content) : parse_raw(content);
+  if (Dialogue turns = parse_sent_and_received(content); turns.size() > records.size())
+    records = std::move(turns);
   records = with_replies_whole(std::move(records));
   if (records.empty()) {
     return fail(
@@ -171,6 +227,7 @@ Result<Dialogue> read_dialogue(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) return fail("dialogue " + file.string() + " cannot be opened; a readable file is wanted");
   const std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (in.bad()) return fail("dialogue " + file.string() + " cannot be read; a readable file is wanted");
   return parse_dialogue(content, file.string());
 }
 

@@ -15,6 +15,14 @@ std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span{text.data(), text.size()});
 }
 
+constexpr std::size_t kLongestRecorded = 1u << 20;
+
+/// A reply at a recording's end may be whole all the same: in one notation its carriage return is the line's
+/// end.
+bool is_whole(std::string_view bytes) {
+  return find_ascii_reply(bytes_of(bytes)).status == FrameStatus::complete;
+}
+
 /// `TX:0001C19B\r` is TX with 0001.
 struct Question {
   std::string_view name;
@@ -22,7 +30,7 @@ struct Question {
 };
 
 Question question_of(std::string_view command) {
-  const std::size_t colon = command.find_first_of(": \r");
+  const std::size_t colon = command.find_first_of(": \r\n");
   Question question{.name = command.substr(0, colon)};
   if (colon == std::string_view::npos || command.size() < colon + 5) return question;
   const bool has_options = command[colon] == ' ' || command.size() >= colon + 9;
@@ -61,7 +69,10 @@ class Counter {
     leave_unanswered();
     open_ = &record;
     ++figures_.commands;
-    const bool has_crc = record.bytes.find(':') != std::string::npos;
+    if (record.cut_off && !is_whole(record.bytes))
+      return remark(record, "the recording ends in the middle of a command");
+    const std::size_t mark = record.bytes.find_first_of(": ");
+    const bool has_crc = mark != std::string::npos && record.bytes[mark] == ':';
     if (!has_crc) return;
     const bool good = find_ascii_reply(bytes_of(record.bytes)).status == FrameStatus::complete;
     count_crc(good, record, "command");
@@ -80,7 +91,9 @@ class Counter {
     ++figures_.replies;
     const Question question = open_ != nullptr ? question_of(open_->bytes) : Question{};
     open_ = nullptr;
-    if (bytes_of(record.bytes).size() >= 2 && record.bytes.starts_with("\xC4\xA5")) {
+    if (record.cut_off && !is_whole(record.bytes)) {
+      remark(record, "the recording ends in the middle of a reply");
+    } else if (binary_header_bytes(bytes_of(record.bytes)) > 0) {
       take_binary(record, question);
     } else {
       take_text(record, question);
@@ -89,12 +102,29 @@ class Counter {
 
   void take_binary(const DialogueRecord& record, const Question& question) {
     const auto bytes = bytes_of(record.bytes);
-    const bool header = bytes.size() >= kBinaryHeaderBytes && crc16(bytes.first(kBinaryHeaderBytes)) == 0;
+    const std::size_t header_bytes = binary_header_bytes(bytes);
+    const bool header = bytes.size() >= header_bytes && crc16(bytes.first(header_bytes)) == 0;
     count_crc(header, record, "reply's header");
-    const ReplyFrame frame = find_binary_reply(bytes);
+    const ReplyFrame frame = find_binary_reply(bytes, kLongestRecorded);
     const bool body = header && frame.status == FrameStatus::complete;
     count_crc(body, record, "reply's body");
-    if (body && question.name == "BX") take_tracking(record, parse_bx(frame.payload, question.options));
+    if (!body) return;
+    if (question.name == "BX") take_tracking(record, parse_bx(frame.payload, question.options));
+    if (question.name == "BX2") take_tracking(record, parse_bx2(frame.payload));
+  }
+
+  /// The old command has no handles: a line for each of its ports.
+  void take_lines(std::string_view text, std::size_t handle_letters) {
+    constexpr std::size_t kTransformLetters = 51;
+    for (std::size_t end = 0; !text.empty(); text.remove_prefix(std::min(end + 1, text.size()))) {
+      end = std::min(text.find('\n'), text.size());
+      std::string_view line = text.substr(0, end);
+      line.remove_prefix(std::min(handle_letters, line.size()));
+      const bool signed_number = line.starts_with('+') || line.starts_with('-');
+      if (signed_number && line.size() >= kTransformLetters) ++figures_.transforms;
+      if (line.starts_with("MISSING")) ++figures_.missing;
+      if (line.starts_with("DISABLED") || line.starts_with("UNOCCUPIED")) ++figures_.disabled;
+    }
   }
 
   void take_text(const DialogueRecord& record, const Question& question) {
@@ -112,8 +142,19 @@ class Counter {
       ++figures_.errors;
       remark(record, std::string(question.name) + " was refused: " + std::string(error_word(*code)));
     } else if (question.name == "TX") {
-      take_tracking(record, parse_tx(frame.text(), question.options));
+      take_poses_as_text(record, frame.text(), question.options);
+    } else if (question.name == "GX") {
+      take_lines(frame.text(), 0);
     }
+  }
+
+  /// Options that this program does not know only add to a line's end.
+  void take_poses_as_text(const DialogueRecord& record, std::string_view text, std::uint16_t options) {
+    const auto reply = parse_tx(text, options);
+    if (reply) return take_tracking(record, reply);
+    constexpr std::size_t kCountLetters = 2, kHandleLetters = 2;
+    remark(record, "holds more than the options that were asked for explain");
+    take_lines(text.substr(std::min(kCountLetters, text.size())), kHandleLetters);
   }
 
   void take_tracking(const DialogueRecord& record, const Result<TrackingReply, ReplyFault>& reply) {

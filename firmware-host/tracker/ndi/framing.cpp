@@ -12,7 +12,7 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-constexpr std::byte kStart0{0xC4};
+constexpr std::byte kShort{0xC4}, kExtended{0xC8};
 constexpr std::byte kStart1{0xA5};
 
 std::uint16_t word_at(Bytes bytes, std::size_t at) noexcept {
@@ -28,12 +28,18 @@ bool may_be_text(Bytes bytes) noexcept {
   return n > 0 && (kError.starts_with(text) || kReset.starts_with(text));
 }
 
-/// The body behind a good header that starts at `at`.
-ReplyFrame body_at(Bytes bytes, std::size_t at) noexcept {
+/// Two bytes of length behind C4 A5, four behind C8 A5; then the header's CRC.
+std::size_t header_bytes(std::byte first) noexcept {
+  return first == kExtended ? kBinaryHeaderBytes + 2 : kBinaryHeaderBytes;
+}
+
+/// The body behind a good header of `header` bytes that starts at `at`.
+ReplyFrame body_at(Bytes bytes, std::size_t at, std::size_t header, std::size_t longest) noexcept {
   ReplyFrame frame{.kind = ReplyKind::binary, .skipped = at};
-  const std::size_t length = word_at(bytes, at + 2);
-  const std::size_t body = at + kBinaryHeaderBytes;
-  if (length + kBinaryHeaderBytes + 2 > kMaxBinaryReplyBytes) {
+  ByteCursor size(bytes.subspan(at + 2));
+  const std::size_t length = header == kBinaryHeaderBytes ? size.u16() : size.u32();
+  const std::size_t body = at + header;
+  if (length + header + 2 > longest) {
     frame.status = FrameStatus::garbage;
     return frame;
   }
@@ -66,14 +72,22 @@ ReplyFrame find_ascii_reply(Bytes bytes) noexcept {
   return frame;
 }
 
-ReplyFrame find_binary_reply(Bytes bytes) noexcept {
+std::size_t binary_header_bytes(Bytes bytes) noexcept {
+  const bool starts =
+      bytes.size() >= 2 && (bytes[0] == kShort || bytes[0] == kExtended) && bytes[1] == kStart1;
+  return starts ? header_bytes(bytes[0]) : 0;
+}
+
+ReplyFrame find_binary_reply(Bytes bytes, std::size_t longest) noexcept {
   if (may_be_text(bytes)) return find_ascii_reply(bytes);
   for (std::size_t at = 0; at < bytes.size(); ++at) {
-    if (bytes[at] != kStart0) continue;
+    if (bytes[at] != kShort && bytes[at] != kExtended) continue;
     const Bytes rest = bytes.subspan(at);
     if (rest.size() >= 2 && rest[1] != kStart1) continue;
-    if (rest.size() < kBinaryHeaderBytes) return {.kind = ReplyKind::binary, .skipped = at};
-    if (crc16(rest.first(4)) == word_at(rest, 4)) return body_at(bytes, at);
+    const std::size_t header = header_bytes(rest[0]);
+    if (rest.size() < header) return {.kind = ReplyKind::binary, .skipped = at};
+    if (crc16(rest.first(header - 2)) == word_at(rest, header - 2))
+      return body_at(bytes, at, header, longest);
     if (at == 0) return {.status = FrameStatus::bad_crc, .kind = ReplyKind::binary, .consumed = bytes.size()};
   }
   const FrameStatus status = bytes.empty() ? FrameStatus::incomplete : FrameStatus::garbage;

@@ -37,10 +37,13 @@ struct ReplyFrame {
 /// Text up to the carriage return, its last four letters the CRC. Any bytes are safe.
 ReplyFrame find_ascii_reply(std::span<const std::byte> bytes) noexcept;
 
-/// C4 A5, length, header CRC, body, body CRC. Skips what comes before a header whose own CRC holds. A device
-/// answers a binary command with text (ERRORhh, RESET) where it cannot obey; that is found too. Any bytes are
-/// safe.
-ReplyFrame find_binary_reply(std::span<const std::byte> bytes) noexcept;
+/// C4 A5, length, header CRC, body, body CRC; or C8 A5 with a length of four bytes, as BX2 may need it. Skips
+/// what comes before a header whose own CRC holds. A device answers a binary command with text (ERRORhh,
+/// RESET) where it cannot obey; that is found too. Any bytes are safe.
+ReplyFrame find_binary_reply(std::span<const std::byte> bytes,
+                             std::size_t longest = kMaxBinaryReplyBytes) noexcept;
+/// What stands in front of the body; 0 where the bytes begin with no start sequence.
+std::size_t binary_header_bytes(std::span<const std::byte> bytes) noexcept;
 
 inline ReplyFrame find_reply(std::span<const std::byte> bytes, ReplyKind kind) noexcept {
   return kind == ReplyKind::ascii ? find_ascii_reply(bytes) : find_binary_reply(bytes);

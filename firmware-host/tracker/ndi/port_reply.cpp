@@ -14,6 +14,17 @@ std::string_view without_padding(std::string_view text) noexcept {
 
 }  // namespace
 
+std::optional<PortLocation> parse_port_location(std::string_view text) noexcept {
+  TextCursor cursor(text);
+  cursor.take(9);  // device, kind of system
+  const std::string_view kind = cursor.take(1);
+  PortLocation location{.wired = kind == "0"};
+  location.port = static_cast<int>(cursor.hex(2));
+  location.channel = static_cast<int>(cursor.hex(2));
+  if (!cursor.ok() || cursor.left() != 0) return std::nullopt;
+  return location;
+}
+
 std::optional<std::uint8_t> parse_new_handle(std::string_view text) noexcept {
   if (text.size() != 2) return std::nullopt;
   const auto handle = parse_hex(text);

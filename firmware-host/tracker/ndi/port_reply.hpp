@@ -36,6 +36,14 @@ struct PortDescription {
   std::string_view part_number;
 };
 
+/// Where a tool is plugged in: the reply to PHINF with kPortLocation.
+struct PortLocation {
+  bool wired = false;
+  int port = 0;     ///< as printed on the device, from 1
+  int channel = 0;  ///< of two sensors in one plug (Aurora): 1 is the first, 0 a single one
+};
+std::optional<PortLocation> parse_port_location(std::string_view text) noexcept;
+
 std::optional<std::uint8_t> parse_new_handle(std::string_view text) noexcept;
 Result<PortHandles, ReplyFault> parse_port_handles(std::string_view text) noexcept;
 /// For the options kPortBasics, with or without kPartNumber.

@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "firmware-host/tracker/ndi/system_alerts.hpp"
 #include "realtime/base/result.hpp"
 
 namespace orcart::ndi {
@@ -22,6 +23,7 @@ struct HandleReading {
   float error_mm = 0;                     ///< RMS of the device's own marker fit
   std::uint32_t port_status = 0;          ///< 0 where the device sent none (disabled)
   std::uint32_t frame = 0;                ///< likewise
+  std::uint8_t tool_code = 0;             ///< BX2's reason, as in tool_status_word(); 0 elsewhere
 };
 
 enum class ReplyFault : std::uint8_t {
@@ -36,6 +38,8 @@ struct TrackingReply {
   std::array<HandleReading, kMaxHandles> handles{};
   std::size_t count = 0;
   std::uint16_t system_status = 0;
+  bool has_frame = true;  ///< false: BX2 had nothing new to tell
+  SystemAlerts alerts;    ///< BX2 alone tells them with the poses
 
   std::span<const HandleReading> readings() const noexcept { return {handles.data(), count}; }
 };
@@ -43,6 +47,11 @@ struct TrackingReply {
 /// `body` is the payload of a BX reply, `options` those of the command. Any bytes are safe; allocates
 /// nothing.
 Result<TrackingReply, ReplyFault> parse_bx(std::span<const std::byte> body, std::uint16_t options) noexcept;
+
+/// `body` is the payload of a BX2 reply: frames of several kinds of tools, each tool once, and alerts. What
+/// is not known is passed over. Port status is made of the tool's code. Any bytes are safe; allocates
+/// nothing.
+Result<TrackingReply, ReplyFault> parse_bx2(std::span<const std::byte> body) noexcept;
 
 /// `text` is the payload of a TX reply; quaternions / 10000, millimetres / 100, error / 10000. Any bytes are
 /// safe.

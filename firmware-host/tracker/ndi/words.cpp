@@ -72,16 +72,58 @@ constexpr auto kErrors = std::to_array<ErrorRow>({
     {0xF1, "too much environmental infra-red"},
 });
 
-constexpr std::array<std::pair<std::uint16_t, std::string_view>, 8> kSystemBits{{
+template <class Bits>
+using BitRow = std::pair<Bits, std::string_view>;
+
+constexpr auto kSystemBits = std::to_array<BitRow<std::uint16_t>>({
     {0x0001, "communication with the sensor out of step"},
     {kTooMuchInfrared, "too much environmental infra-red"},
     {0x0004, "CRC error inside the system"},
     {0x0008, "recoverable fault"},
     {0x0010, "hardware failure"},
     {0x0020, "hardware changed"},
-    {0x0040, "a port became occupied"},
-    {0x0080, "a port became unoccupied"},
-}};
+    {kPortOccupied, "a port became occupied"},
+    {kPortUnoccupied, "a port became unoccupied"},
+    {kAlertsPending, "alerts are pending"},
+    {0x0200, "temperature out of range"},
+});
+
+constexpr auto kPortBits = std::to_array<BitRow<std::uint32_t>>({
+    {kSwitch1, "switch 1 pressed"},
+    {kSwitch2, "switch 2 pressed"},
+    {kSwitch3, "switch 3 pressed"},
+    {kOutOfVolume, "outside the measurement volume"},
+    {kPartlyInVolume, "partly outside the measurement volume"},
+    {kSensorBroken, "sensor broken, or a limit of the algorithm"},
+    {kInterference, "interference by light or metal"},
+    {kSignalTooSmall, "signal too small"},
+    {kSignalTooBig, "signal too big"},
+    {kProcessingException, "processing exception"},
+    {kPortHardwareFailure, "hardware failure of the port"},
+});
+
+constexpr auto kToolCodes = std::to_array<BitRow<std::uint8_t>>({
+    {0, "tracked"},
+    {kToolPartlyInView, "partly outside the measurement volume"},
+    {5, "averaged over fewer frames than asked for"},
+    {kToolOutOfVolume, "outside the measurement volume"},
+    {13, "too few markers seen"},
+    {14, "interference by infra-red light"},
+    {17, "the markers do not fit the tool's definition"},
+    {18, "too many markers in view"},
+    {19, "a limit of the algorithm"},
+    {20, "the device fell behind"},
+    {21, "the sensors are out of step"},
+    {22, "processing exception"},
+    {kToolMissing, "not seen"},
+    {kTrackingNotEnabled, "tracking is not enabled for it"},
+    {kToolUnplugged, "unplugged"},
+});
+
+void append(std::string& words, std::string_view word) {
+  if (!words.empty()) words += ", ";
+  words += word;
+}
 
 }  // namespace
 
@@ -107,12 +149,26 @@ std::string_view disabled_reason(std::uint32_t port_status) noexcept {
   return "ready";
 }
 
+std::string port_status_words(std::uint32_t port_status) {
+  std::string words;
+  if ((port_status & kPortReady) != kPortReady) append(words, disabled_reason(port_status));
+  for (const auto& [bit, word] : kPortBits) {
+    if ((port_status & bit) != 0) append(words, word);
+  }
+  return words.empty() ? "ready" : words;
+}
+
+std::string_view tool_status_word(std::uint8_t code) noexcept {
+  for (const auto& [known, word] : kToolCodes) {
+    if (known == code) return word;
+  }
+  return "a state this program has no word for";
+}
+
 std::string system_status_words(std::uint16_t status) {
   std::string words;
   for (const auto& [bit, word] : kSystemBits) {
-    if ((status & bit) == 0) continue;
-    if (!words.empty()) words += ", ";
-    words += word;
+    if ((status & bit) != 0) append(words, word);
   }
   return words.empty() ? "fine" : words;
 }

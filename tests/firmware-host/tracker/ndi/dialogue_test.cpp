@@ -24,6 +24,55 @@ TEST(Dialogue, IsReadInEachNotation) {
   expect_init_and_okay(parse_dialogue("sent:0001 = INIT:E3A5\nrecv:0001 = OKAYA896\nsent:0002 = \n", "text"));
 }
 
+TEST(Dialogue, IsReadWhateverStandsInFrontOfARecordAndHoweverLinesEnd) {
+  expect_init_and_okay(
+      parse_dialogue("[12:00:01.4] DEBUG 1. command[10] INIT:E3A5\\x0d\r\n[12:00:01.5] DEBUG 1. receive[9] "
+                     "OKAYA896\\x0d\r\n",
+                     "log"));
+  expect_init_and_okay(parse_dialogue("command[10] INIT:E3A5\\x0D\nreceive[9] OKAYA896\\x0D", "log"));
+  expect_init_and_okay(parse_dialogue("1. command[10] INIT:E3A5\r\n1. receive[9] OKAYA896\r\n", "bin"));
+  expect_init_and_okay(parse_dialogue("2012 sent:0001 = INIT:E3A5\r\n2012 recv:0001 = OKAYA896", "text"));
+  expect_init_and_okay(parse_dialogue("sent:1 = INIT:E3A5\\x0D\nrecv:1 = OKAYA896\\x0D\n", "text"));
+}
+
+TEST(Dialogue, DoesNotBelieveALengthThatLineEndsHaveMadeWrong) {
+  const auto dialogue = parse_dialogue(
+      "1. command[9] VER:4A6EF\r\n1. receive[13] Polaris\r\n12A4\r\n2. command[10] INIT:E3A5\r\n", "bin");
+  ASSERT_TRUE(dialogue);
+  ASSERT_EQ(dialogue->size(), 3u);
+  EXPECT_EQ((*dialogue)[2].bytes.substr(0, 9), "INIT:E3A5");
+}
+
+TEST(Dialogue, CountsNoCrcOfAMessageThatTheRecordingCutsOff) {
+  for (const std::string_view end : {"1. receive[9] OKAY", "1. receive[9] OKAYA8"}) {
+    const auto dialogue = parse_dialogue("1. command[10] INIT:E3A5\\x0D\n" + std::string(end), "log");
+    ASSERT_TRUE(dialogue);
+    const DialogueFigures figures = count_dialogue(*dialogue);
+    EXPECT_EQ(figures.replies, 1u);
+    EXPECT_EQ(figures.crc_good, 1u);
+    EXPECT_EQ(figures.crc_bad, 0u);
+    ASSERT_EQ(figures.remarks.size(), 1u);
+    EXPECT_NE(figures.remarks[0].find("the recording ends"), std::string::npos);
+  }
+}
+
+TEST(Dialogue, CountsPosesOfEveryCommandThatTellsThem) {
+  const std::string transform = "+09999+00001+00002-00003-012345+001234-150000+00123";
+  const std::string gx = transform + "\nMISSING\nUNOCCUPIED\n00000031";
+  const std::string tx = "0201" + transform + "0000003100000001" + "7F0C\n02DISABLED\n0000";
+  const std::string text = "sent:1 = " + testing::framed("GX:0001") + "\nrecv:1 = " + testing::framed(gx) +
+                           "\nsent:2 = " + testing::framed("TX:4001") + "\nrecv:2 = " + testing::framed(tx) +
+                           "\n";
+  const auto dialogue = parse_dialogue(text, "text");
+  ASSERT_TRUE(dialogue);
+  const DialogueFigures figures = count_dialogue(*dialogue);
+  EXPECT_EQ(figures.crc_good, 4u);
+  EXPECT_EQ(figures.crc_bad, 0u);
+  EXPECT_EQ(figures.transforms, 2u);
+  EXPECT_EQ(figures.missing, 1u);
+  EXPECT_EQ(figures.disabled, 2u);
+}
+
 TEST(Dialogue, JoinsLinesOfOneReply) {
   const auto dialogue = parse_dialogue("sent:0001 = VER:4A6EF\nrecv:0001 = Polaris\nE2CA\n", "text");
   ASSERT_TRUE(dialogue);

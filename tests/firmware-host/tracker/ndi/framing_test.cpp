@@ -93,5 +93,23 @@ TEST(BinaryFraming, FindsAnErrorThatIsAnsweredInText) {
   EXPECT_EQ(frame.text(), "ERROR01");
 }
 
+TEST(BinaryFraming, TakesTheHeaderWithALongLength) {
+  std::string message = "\xC8\xA5";
+  message += std::string("\x03\x00\x00\x00", 4);
+  const unsigned crc = crc16(message);
+  message += static_cast<char>(crc & 0xFFu);
+  message += static_cast<char>(crc >> 8);
+  message += "abc";
+  const unsigned body = crc16(std::string_view("abc"));
+  message += static_cast<char>(body & 0xFFu);
+  message += static_cast<char>(body >> 8);
+  const auto frame = ndi::find_binary_reply(bytes_of(message));
+  EXPECT_EQ(frame.status, ndi::FrameStatus::complete);
+  EXPECT_EQ(frame.text(), "abc");
+  EXPECT_EQ(frame.consumed, message.size());
+  for (std::size_t size = 0; size < message.size(); ++size)
+    EXPECT_NE(ndi::find_binary_reply(bytes_of(message).first(size)).status, ndi::FrameStatus::complete);
+}
+
 }  // namespace
 }  // namespace orcart::testing

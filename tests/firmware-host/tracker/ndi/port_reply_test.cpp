@@ -71,5 +71,21 @@ TEST(Words, SayTheMostBasicReasonFirst) {
   EXPECT_EQ(system_status_words(0x0012), "too much environmental infra-red, hardware failure");
 }
 
+// Replies of a real Aurora and a real Polaris, 2005.
+TEST(PortLocation, TellsWhereARealToolIsPluggedIn) {
+  const auto aurora = ndi::parse_port_location("A3-00142100200");
+  ASSERT_TRUE(aurora);
+  EXPECT_TRUE(aurora->wired);
+  EXPECT_EQ(aurora->port, 2);
+  EXPECT_EQ(aurora->channel, 0);
+  EXPECT_EQ(ndi::parse_port_location("P4-00148001005")->channel, 5);
+  EXPECT_FALSE(ndi::parse_port_location("P0-00001010101")->wired == true);
+}
+
+TEST(PortLocation, IsRefusedWhereItIsNone) {
+  for (const std::string_view text : {"", "UNOCCUPIED", "A3-0014210020", "A3-001421002000", "A3-0014210xx00"})
+    EXPECT_FALSE(ndi::parse_port_location(text)) << text;
+}
+
 }  // namespace
 }  // namespace orcart::ndi
