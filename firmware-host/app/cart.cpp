@@ -9,7 +9,6 @@
 #include "firmware-host/stages/pedal_stage.hpp"
 #include "firmware-host/stages/sync_stage.hpp"
 #include "firmware-host/stages/tracker_stage.hpp"
-#include "firmware-host/tracker/ndi/baud.hpp"
 #include "realtime/kernel/simulated_runner.hpp"
 #include "realtime/kernel/worker_thread.hpp"
 #include "render/views/screen.hpp"
@@ -23,12 +22,6 @@ std::array<StageLedger, kStageCount> ledgers_for(RenderClass render_class) {
   const auto one = [&](StageId id) { return StageLedger(row_of(id).name, budget_of(id, render_class)); };
   return {one(StageId::pedal),  one(StageId::tracker), one(StageId::camera), one(StageId::sync),
           one(StageId::mapper), one(StageId::painter), one(StageId::panel),  one(StageId::session)};
-}
-
-/// A reply of both tools arrives no sooner than its bytes are through the line; a network has none.
-Nanos reply_wire_time(const TrackerConfig& tracker) {
-  if (tracker.kind == "tcp") return Nanos{0};
-  return ndi::wire_time(poll_reply_bytes(2), tracker.baud);
 }
 
 Eigen::Vector3d vector_of(const std::vector<double>& xyz) {
@@ -105,15 +98,9 @@ Result<void> Cart::State::build_painting() {
 }
 
 Result<void> Cart::State::build_tracker() {
-  const TrackerConfig& config = setup.config.tracker;
-  NdiSettings settings{.poll_rate_hz = config.rate_hz, .device_rate_hz = config.rate_hz, .baud = config.baud};
-  for (const auto& file : {config.scope_rom, config.reference_rom}) {
-    auto tool = ndi::read_tool_definition(file);
-    if (!tool) return tl::unexpected(tool.error());
-    settings.tools.push_back(*tool);
-  }
-  if (auto checked = check(settings); !checked) return checked;
-  driver = std::make_unique<NdiDriver>(std::move(settings), setup.ports.tracker);
+  auto settings = settings_of(setup.config.tracker);
+  if (!settings) return tl::unexpected(settings.error());
+  driver = std::make_unique<NdiDriver>(std::move(*settings), setup.ports.tracker);
   return {};
 }
 
@@ -124,9 +111,8 @@ void Cart::State::build_stages() {
   pedal = std::make_unique<PedalStage>(setup.ports.pedal, PedalSettings{}, lanes);
   tracker = std::make_unique<TrackerStage>(
       *driver,
-      ClockFitSettings{
-          .rate_hz = config.tracker.rate_hz,
-          .device_latency = from_seconds(config.tracker.latency_ms * 1e-3) + reply_wire_time(config.tracker)},
+      ClockFitSettings{.rate_hz = config.tracker.rate_hz,
+                       .device_latency = from_seconds(config.tracker.latency_ms * 1e-3)},
       lanes);
   tracker_wake = std::make_unique<TrackerWake>(setup.ports.tracker, *driver);
   camera =

@@ -20,16 +20,6 @@ void read_files(TomlReader& reader, CartConfig& config) {
   config.registration = registration.path("file");
 }
 
-void read_tracker(const TomlSection& section, TrackerConfig& tracker) {
-  tracker.kind = section.choice("kind", {"simulated"});
-  tracker.rate_hz = section.number("rate_hz", {.min = 20, .max = 400, .fallback = 60});
-  tracker.baud = static_cast<std::uint32_t>(
-      section.integer("baud", {.min = 9600, .max = 1'228'739, .fallback = 115'200}));
-  tracker.latency_ms = section.number("latency_ms", {.min = 0, .max = 100, .fallback = 0.0});
-  tracker.scope_rom = section.path("scope_rom");
-  tracker.reference_rom = section.path("reference_rom");
-}
-
 void read_camera(const TomlSection& section, CameraConfig& camera) {
   camera.kind = section.choice("kind", {"simulated"});
   camera.width_px = static_cast<int>(section.integer("width_px", {.min = 64, .max = 4096, .fallback = 640}));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware-host/app/tracker_config.hpp"
 #include "firmware-host/camera/stamp_meaning.hpp"
 #include "realtime/base/image.hpp"
 #include "realtime/base/instant.hpp"
@@ -14,14 +15,6 @@
 #include "realtime/mapper/cutout_patch.hpp"
 
 namespace orcart {
-
-struct TrackerConfig {
-  std::string kind = "simulated";
-  double rate_hz = 60;
-  std::uint32_t baud = 115200;
-  double latency_ms = 0;  ///< from the device frame to its reply being ready, taken off every stamp
-  std::filesystem::path scope_rom, reference_rom;
-};
 
 struct CameraConfig {
   std::string kind = "simulated";
@@ -61,7 +54,8 @@ struct CartConfig {
   std::vector<double> view_up = {0, 0, 1};
   SimulationConfig simulation;
 
-  bool simulated() const { return tracker.kind == "simulated" || camera.kind == "simulated"; }
+  /// Whether any input is none of the operating room's: every view then wears a mark.
+  bool simulated() const { return !is_device(tracker.kind) || camera.kind == "simulated"; }
 };
 
 /// Every error at once, each with its line; unknown keys are refused.

@@ -10,6 +10,7 @@
 #include "firmware-host/app/cart.hpp"
 #include "firmware-host/app/heartbeat.hpp"
 #include "firmware-host/app/kept_session.hpp"
+#include "firmware-host/app/open_tracker.hpp"
 #include "firmware-host/app/preview.hpp"
 #include "firmware-host/app/run_figures.hpp"
 #include "firmware-host/app/simulated_devices.hpp"
@@ -275,9 +276,17 @@ ExitCode run(const Options& options) {
        .drawing = [&](double done) { progress.show("drawing what the camera will see", done); }});
   progress.end();
   if (!devices) return complain(devices.error(), ExitCode::device);
+  if (simulate && is_device(config->tracker.kind))
+    return complain({"a tracker on a real line needs --clock real: it keeps its own time"}, ExitCode::usage);
+  auto tracker = open_tracker(config->tracker, clock);
+  if (!tracker) return complain(tracker.error(), ExitCode::device);
+  const Ports simulated_ports = (*devices)->ports();
   auto cart = Cart::create({.config = *config,
                             .patient = *patient,
-                            .ports = (*devices)->ports(),
+                            .ports = {.tracker = *tracker ? **tracker : simulated_ports.tracker,
+                                      .camera = simulated_ports.camera,
+                                      .pedal = simulated_ports.pedal,
+                                      .panel = simulated_ports.panel},
                             .clock = clock,
                             .session = session ? &session->stage() : nullptr,
                             .longest_run_s = config->simulation.duration_s + 10});

@@ -24,6 +24,8 @@ struct TrackerNews {
   bool running = false;
   ToolState scope = ToolState::unseen;
   ToolState reference = ToolState::unseen;
+  Instant bumped_at{};    ///< when the sensor was last knocked; zero where never
+  bool infrared = false;  ///< too much light of other sources
 };
 
 /// The camera as its stage sees it, for the panel.

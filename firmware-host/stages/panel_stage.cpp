@@ -42,6 +42,7 @@ Freshness shown_as(Liveness liveness) {
   return Freshness::lost;
 }
 
+constexpr Nanos kBumpShownFor = 30s;
 constexpr Nanos kScopeShownFor = 50ms;
 constexpr Nanos kNoticeTime = 2s;
 
@@ -158,9 +159,13 @@ void PanelStage::choose_notice(Instant now) noexcept {
   if (status.video == Freshness::lost)
     return notice(Notice::Level::alarm, "NO LIVE VIDEO: check the camera's cable");
   if (status.tracker == Freshness::lost) return notice(Notice::Level::alarm, "TRACKER LOST: check its cable");
+  if (tracker_.infrared)
+    return notice(Notice::Level::warning, "TOO MUCH INFRA-RED LIGHT: shade or move the lamp");
   if (!status.tool_seen) return notice(Notice::Level::warning, "TOOL NOT SEEN: clear its line of sight");
   if (!status.reference_seen)
     return notice(Notice::Level::warning, "REFERENCE NOT SEEN: clear its line of sight");
+  if (tracker_.bumped_at != Instant{} && now - tracker_.bumped_at < kBumpShownFor)
+    return notice(Notice::Level::warning, "TRACKER BUMPED: verify on a landmark");
   if (camera_.frozen) return notice(Notice::Level::warning, "VIDEO FROZEN? The picture repeats");
   if (paint.failed_at != Instant{} && now - paint.failed_at < kNoticeTime)
     return notice(Notice::Level::warning, words_for(paint.last_refusal));

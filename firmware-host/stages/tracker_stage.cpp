@@ -1,12 +1,19 @@
 // Both tools must come from one device frame to make a complete sample.
 #include "firmware-host/stages/tracker_stage.hpp"
 
+#include "firmware-host/tracker/ndi/words.hpp"
+
 namespace orcart {
 
 StepReport TrackerStage::step(Instant now) noexcept {
   const DriverReport report = driver_.step(now);
   news_.running = report.health == TrackerHealth::live || report.health == TrackerHealth::suspect;
+  if (driver_.bumped()) {
+    news_.bumped_at = now;
+    driver_.forget_alerts();
+  }
   if (report.new_reply) {
+    news_.infrared = (driver_.reply().system_status & ndi::kTooMuchInfrared) != 0;
     const PoseSample sample = sample_of(driver_.reply());
     (void)lanes_.poses.try_push(sample);
     news_.last_reply = sample.arrived_at;
@@ -19,7 +26,8 @@ StepReport TrackerStage::step(Instant now) noexcept {
 }
 
 PoseSample TrackerStage::sample_of(const TrackerReply& reply) noexcept {
-  (void)fit_.observe(reply.device_frame, reply.arrived_at);
+  // A reply with a missing tool is shorter and so comes sooner: what the line takes is taken off each.
+  (void)fit_.observe(reply.device_frame, reply.arrived_at - reply.wire_time);
   const ToolReading &scope = reply.tools[0], &reference = reply.tools[1];
   PoseSample sample{.measured_at = fit_.host_time(reply.device_frame),
                     .arrived_at = reply.arrived_at,

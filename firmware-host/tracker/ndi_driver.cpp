@@ -2,6 +2,7 @@
 #include "firmware-host/tracker/ndi_driver.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -19,9 +20,10 @@ constexpr Nanos kHostMargin = 8ms;
 /// Actions of the start that one step may carry out; more than any stretch without waiting has.
 constexpr int kActionsPerStep = 8;
 constexpr double kUnitTolerance = 0.02;
+constexpr std::uint8_t kInvalidCommand = 0x01;
 
 Nanos patience_for(const NdiSettings& settings) noexcept {
-  const Nanos wire = ndi::wire_time(poll_exchange_bytes(settings.tools.size()), settings.baud);
+  const Nanos wire = ndi::wire_time(poll_exchange_bytes(settings.tools.size(), settings.poll), settings.baud);
   return std::max(2 * period_of(settings.poll_rate_hz), wire + kHostMargin);
 }
 
@@ -136,20 +138,48 @@ void NdiDriver::advance_start(ExchangeEvent event, Instant now) noexcept {
   }
 }
 
+/// BX2's replies are longer: on a slow line they may not fit where BX's do.
+PollForm NdiDriver::best_form() const noexcept {
+  PollLoad load = load_of(settings_);
+  load.form = PollForm::bx2;
+  const bool fits = rate_fits(load, settings_.baud == 0 ? 0 : start_.baud());
+  return start_.knows_frames() && fits ? PollForm::bx2 : PollForm::bx;
+}
+
 void NdiDriver::begin_polling(Instant now) noexcept {
   phase_ = Phase::polling;
-  ask_for_ports_ = asked_for_ports_ = false;
+  ask_for_ports_ = ask_for_alerts_ = false;
+  alerts_ = told_ = {};
+  form_ = settings_.poll;
+  if (form_ == PollForm::automatic) form_ = best_form();
   port_status_.fill(ndi::kPortReady);
   watch_.begin(now);
   next_poll_ = now;
   ask(now);
 }
 
+/// A question about the device takes the place of one poll, so that there is never more than one command out.
+ndi::Command NdiDriver::next_command() noexcept {
+  if (std::exchange(ask_for_ports_, false)) {
+    asked_ = Asked::ports;
+    return ndi::search_ports(ndi::PortSearch::all);
+  }
+  if (std::exchange(ask_for_alerts_, false)) {
+    asked_ = Asked::alerts;
+    return ndi::get_parameter("Info.Status.New Alerts");
+  }
+  // No partner: the number alone is handed over.
+  if (const int beeps = beeps_wanted_.exchange(0, std::memory_order_relaxed); beeps > 0) {
+    asked_ = Asked::beep;
+    return ndi::beep(beeps);
+  }
+  asked_ = Asked::poses;
+  if (form_ == PollForm::tx) return ndi::poll_text(kPollOptions);
+  return form_ == PollForm::bx2 ? ndi::poll_frames() : ndi::poll_binary(kPollOptions);
+}
+
 void NdiDriver::ask(Instant now) noexcept {
-  asked_for_ports_ = std::exchange(ask_for_ports_, false);
-  const ndi::Command command =
-      asked_for_ports_ ? ndi::search_ports(ndi::PortSearch::all) : ndi::poll_binary(kPollOptions);
-  link_is_down_ = !exchange_.begin(command, now, poll_patience_);
+  link_is_down_ = !exchange_.begin(next_command(), now, poll_patience_);
   if (link_is_down_) {
     return give_up(TrackerTrouble::disconnected, now);
   }
@@ -186,24 +216,67 @@ void NdiDriver::watch(Instant now) noexcept {
 void NdiDriver::take_reply(Instant now, DriverReport& report) noexcept {
   const ndi::ReplyFrame& frame = exchange_.frame();
   if (exchange_.skipped() > 0) ++counters_.resyncs;
-  if (frame.kind == ndi::ReplyKind::ascii) return take_text(frame.text(), now);
-  const auto said = ndi::parse_bx(frame.payload, kPollOptions);
+  const bool text_is_poses = asked_ == Asked::poses && form_ == PollForm::tx;
+  if (frame.kind == ndi::ReplyKind::binary) return take_poses(now, report);
+  if (!text_is_poses || ndi::error_code(frame.text()) || frame.text() == "RESET")
+    return take_text(frame.text(), now);
+  take_poses(now, report);
+}
+
+Result<ndi::TrackingReply, ndi::ReplyFault> NdiDriver::parsed() const noexcept {
+  const ndi::ReplyFrame& frame = exchange_.frame();
+  if (form_ == PollForm::tx) return ndi::parse_tx(frame.text(), kPollOptions);
+  return form_ == PollForm::bx2 ? ndi::parse_bx2(frame.payload) : ndi::parse_bx(frame.payload, kPollOptions);
+}
+
+void NdiDriver::take_poses(Instant now, DriverReport& report) noexcept {
+  const auto said = parsed();
   if (!said) {
     ++counters_.crc_bad;
     return watch_.on_damaged_reply(now);
   }
   ++counters_.replies;
   watch_.on_good_reply(now);
+  notice(*said);
   take_readings(*said, now, report);
 }
 
-void NdiDriver::take_text(std::string_view text, Instant now) noexcept {
-  if (asked_for_ports_ && !ndi::error_code(text)) {
-    watch_.on_good_reply(now);
-    return take_port_list(text);
+void NdiDriver::notice(const ndi::TrackingReply& said) noexcept {
+  if (said.has_frame) {
+    // BX2 repeats an alert while it stands; it counts when it begins.
+    alerts_.add(said.alerts.except(told_));
+    told_ = said.alerts;
   }
-  // Not tracking, not initialised, or RESET: the device has forgotten what it was told.
+  if ((said.system_status & ndi::kAlertsPending) != 0) ask_for_alerts_ = true;
+}
+
+void NdiDriver::take_text(std::string_view text, Instant now) noexcept {
+  if (const auto code = ndi::error_code(text)) return take_refusal(*code, now);
+  if (asked_ != Asked::poses && text != "RESET") return take_answer(text, now);
+  // RESET, or an answer to nothing: the device has forgotten what it was told.
   give_up(TrackerTrouble::device_reset, now);
+}
+
+void NdiDriver::take_refusal(std::uint8_t code, Instant now) noexcept {
+  if (asked_ == Asked::alerts || asked_ == Asked::beep)
+    return watch_.on_good_reply(now);  // it cannot; no matter
+  if (asked_ == Asked::poses && code == kInvalidCommand && settings_.poll == PollForm::automatic &&
+      form_ != PollForm::tx) {
+    form_ = form_ == PollForm::bx2 ? PollForm::bx : PollForm::tx;
+    return;
+  }
+  // Not tracking, not initialised: the device has forgotten what it was told.
+  give_up(code == kInvalidCommand ? TrackerTrouble::device_refuses : TrackerTrouble::device_reset, now);
+}
+
+void NdiDriver::take_answer(std::string_view text, Instant now) noexcept {
+  watch_.on_good_reply(now);
+  if (asked_ == Asked::ports) return take_port_list(text);
+  if (asked_ != Asked::alerts) return;
+  const std::string_view digits = text.substr(std::min(text.find('=') + 1, text.size()));
+  std::uint32_t bits = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), bits);
+  if (error == std::errc{} && end != digits.data()) alerts_.add(ndi::alerts_from_parameter(bits));
 }
 
 int NdiDriver::tool_of(std::uint8_t handle) const noexcept {
@@ -214,8 +287,7 @@ int NdiDriver::tool_of(std::uint8_t handle) const noexcept {
 }
 
 ToolReading NdiDriver::judged(const ndi::HandleReading& said) const noexcept {
-  ToolReading tool{
-      .error_mm = said.error_mm, .port_status = said.port_status & 0xFFu, .device_frame = said.frame};
+  ToolReading tool{.error_mm = said.error_mm, .port_status = said.port_status, .device_frame = said.frame};
   if (said.status == ndi::HandleStatus::disabled) tool.state = ToolState::disabled;
   if (!said.has_transform) return tool;
   tool.quaternion =
@@ -240,6 +312,8 @@ ToolReading NdiDriver::judged(const ndi::HandleReading& said) const noexcept {
 void NdiDriver::take_readings(const ndi::TrackingReply& said, Instant now, DriverReport& report) noexcept {
   TrackerReply reply{.arrived_at = exchange_.arrived_at(),
                      .asked_at = exchange_.asked_at(),
+                     .wire_time = ndi::wire_time(exchange_.frame().consumed - exchange_.frame().skipped,
+                                                 settings_.baud == 0 ? 0 : start_.baud()),
                      .tool_count = reply_.tool_count,
                      .system_status = said.system_status};
   bool any_frame = false;
@@ -262,7 +336,7 @@ void NdiDriver::take_readings(const ndi::TrackingReply& said, Instant now, Drive
   // Where no tool has a frame number (all disabled, or none of the handles is ours) the device measures
   // nothing.
   if (!any_frame) reply.device_frame = reply_.device_frame;
-  const bool fresh = watch_.on_frame(reply.device_frame, now) || !any_frame;
+  const bool fresh = watch_.on_frame(reply.device_frame, now) || (!any_frame && said.has_frame);
   health_ = TrackerHealth::live;
   back_off_ = kFirstBackOff;
   if (!fresh) {
@@ -305,8 +379,10 @@ void NdiDriver::plan(Instant now) noexcept {
 std::string NdiDriver::trouble_sentence() const {
   std::string sentence(word_for(trouble_));
   const int tool = start_.failed_tool();
-  if (trouble_ != TrackerTrouble::device_refuses && trouble_ != TrackerTrouble::bad_answer) return sentence;
-  if (tool >= 0) sentence += " for tool " + settings_.tools[static_cast<std::size_t>(tool)].part_number;
+  const bool names_a_tool = trouble_ == TrackerTrouble::device_refuses ||
+                            trouble_ == TrackerTrouble::bad_answer || trouble_ == TrackerTrouble::tool_absent;
+  if (!names_a_tool) return sentence;
+  if (tool >= 0) sentence += " for tool " + settings_.tools[static_cast<std::size_t>(tool)].name();
   if (start_.error_code() != 0) sentence += ": " + std::string(ndi::error_word(start_.error_code()));
   return sentence;
 }

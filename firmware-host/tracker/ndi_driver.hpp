@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -58,6 +59,18 @@ class NdiDriver {
   TrackerHealth health() const noexcept { return health_; }
   TrackerTrouble trouble() const noexcept { return trouble_; }
   std::uint32_t baud() const noexcept { return start_.baud(); }
+  std::string_view firmware() const noexcept { return start_.firmware(); }
+  std::string_view api_revision() const noexcept { return start_.api_revision(); }
+  /// How poses are asked for now; never automatic while polling.
+  PollForm poll_form() const noexcept { return form_; }
+  /// All that the device has told of itself since it was started; the bump detector among it.
+  const ndi::SystemAlerts& alerts() const noexcept { return alerts_; }
+  /// The sensor was knocked: what is registered to tracker space has to be verified on a landmark. Stands
+  /// until somebody says that this was done.
+  bool bumped() const noexcept { return alerts_.bumped(); }
+  void forget_alerts() noexcept { alerts_ = {}; }
+  /// Lets the device beep 1 to 9 times in one of the next polls' place. Any thread.
+  void beep(int times) noexcept { beeps_wanted_.store(times, std::memory_order_relaxed); }
   /// Why the tool is disabled, as its port says; "ready" where it is not.
   std::string_view disabled_reason(int tool) const noexcept;
   /// The trouble in one sentence, with the device's error and the tool. Allocates: not for a step().
@@ -65,6 +78,8 @@ class NdiDriver {
 
  private:
   enum class Phase : std::uint8_t { starting, polling, waiting };
+  /// What the exchange under way was about.
+  enum class Asked : std::uint8_t { poses, ports, alerts, beep };
 
   void start(Instant now) noexcept;
   void give_up(TrackerTrouble trouble, Instant now) noexcept;
@@ -75,7 +90,14 @@ class NdiDriver {
   void advance_polling(ExchangeEvent event, Instant now, DriverReport& report) noexcept;
   void ask(Instant now) noexcept;
   void take_reply(Instant now, DriverReport& report) noexcept;
+  void take_poses(Instant now, DriverReport& report) noexcept;
+  Result<ndi::TrackingReply, ndi::ReplyFault> parsed() const noexcept;
   void take_text(std::string_view text, Instant now) noexcept;
+  void take_answer(std::string_view text, Instant now) noexcept;
+  void take_refusal(std::uint8_t code, Instant now) noexcept;
+  void notice(const ndi::TrackingReply& said) noexcept;
+  ndi::Command next_command() noexcept;
+  PollForm best_form() const noexcept;
   void take_readings(const ndi::TrackingReply& said, Instant now, DriverReport& report) noexcept;
   ToolReading judged(const ndi::HandleReading& said) const noexcept;
   int tool_of(std::uint8_t handle) const noexcept;
@@ -96,8 +118,13 @@ class NdiDriver {
   TrackerTrouble trouble_ = TrackerTrouble::none;
   bool link_is_down_ = false;
   bool in_pause_ = false;
+  PollForm form_ = PollForm::bx;
+  Asked asked_ = Asked::poses;
   bool ask_for_ports_ = false;
-  bool asked_for_ports_ = false;
+  bool ask_for_alerts_ = false;
+  ndi::SystemAlerts alerts_;
+  ndi::SystemAlerts told_;  ///< by the newest frame of BX2
+  std::atomic<int> beeps_wanted_{0};
   bool started_before_ = false;
   Instant pause_until_{};
   Instant retry_at_{};

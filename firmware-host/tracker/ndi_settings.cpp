@@ -31,7 +31,7 @@ bool is_rate(double rate_hz) {
 }
 
 std::string unfit_sentence(const NdiSettings& settings) {
-  const std::size_t bytes = poll_exchange_bytes(settings.tools.size());
+  const std::size_t bytes = poll_exchange_bytes(settings.tools.size(), settings.poll);
   const double needed_ms = milliseconds(ndi::wire_time(bytes, settings.baud));
   const double most_hz = std::floor(kUsableShare * 1e3 / needed_ms);
   return "tracker poll rate " + number(settings.poll_rate_hz) + " Hz does not fit: a poll of " +
@@ -41,19 +41,37 @@ std::string unfit_sentence(const NdiSettings& settings) {
 
 }  // namespace
 
-std::size_t poll_exchange_bytes(std::size_t tools) noexcept {
-  constexpr std::size_t kCommand = 12;
-  return kCommand + poll_reply_bytes(tools);
+std::string TrackedTool::name() const {
+  if (!wired) return definition.part_number;
+  return "in port " + std::to_string(wired->number) +
+         (wired->channel > 0 ? ", channel " + std::to_string(wired->channel) : "");
 }
 
-std::size_t poll_reply_bytes(std::size_t tools) noexcept {
-  constexpr std::size_t kEnvelope = 6 + 1 + 2 + 2;  // header, count, system status, CRC
-  constexpr std::size_t kTool = 2 + 8 * 4 + 4 + 4;
-  return kEnvelope + tools * kTool;
+std::size_t poll_exchange_bytes(std::size_t tools, PollForm form) noexcept {
+  constexpr std::size_t kCommand = 12, kFrameCommand = 53;
+  return (form == PollForm::bx2 ? kFrameCommand : kCommand) + poll_reply_bytes(tools, form);
 }
 
-bool rate_fits(std::size_t tools, double rate_hz, std::uint32_t baud) noexcept {
-  return seconds(ndi::wire_time(poll_exchange_bytes(tools), baud)) * rate_hz <= kUsableShare;
+std::size_t poll_reply_bytes(std::size_t tools, PollForm form) noexcept {
+  constexpr std::size_t kHeaderAndCrc = 8;
+  constexpr std::size_t kFloats = 8 * 4;
+  switch (form) {
+    case PollForm::tx:  // count, then handle, 51 letters, status, frame, line feed; system status, CRC
+      return 2 + tools * (2 + 51 + 8 + 8 + 1) + 4 + 5;
+    case PollForm::bx2:  // two levels of components, and one alert
+      return kHeaderAndCrc + 4 + 12 + 16 + 4 + 12 + tools * (4 + kFloats) + 16;
+    default:  // count, then handle, state, port status, frame; system status
+      return kHeaderAndCrc + 1 + tools * (2 + kFloats + 8) + 2;
+  }
+}
+
+bool rate_fits(const PollLoad& load, std::uint32_t baud) noexcept {
+  const std::size_t bytes = poll_exchange_bytes(load.tools, load.form);
+  return seconds(ndi::wire_time(bytes, baud)) * load.rate_hz <= kUsableShare;
+}
+
+PollLoad load_of(const NdiSettings& settings) noexcept {
+  return {.tools = settings.tools.size(), .rate_hz = settings.poll_rate_hz, .form = settings.poll};
 }
 
 Result<void> check(const NdiSettings& settings) {
@@ -70,8 +88,11 @@ Result<void> check(const NdiSettings& settings) {
     return fail("tracker baud " + std::to_string(settings.baud) +
                 " is none that NDI devices have; accepted are " + known_bauds());
   }
-  if (!rate_fits(settings.tools.size(), settings.poll_rate_hz, settings.baud))
-    return fail(unfit_sentence(settings));
+  if (settings.beeps_when_tracking < 0 || settings.beeps_when_tracking > 9) {
+    return fail("tracker is to beep " + std::to_string(settings.beeps_when_tracking) +
+                " times; 0 to 9 would be accepted");
+  }
+  if (!rate_fits(load_of(settings), settings.baud)) return fail(unfit_sentence(settings));
   return {};
 }
 

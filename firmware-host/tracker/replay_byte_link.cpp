@@ -14,7 +14,14 @@ std::string_view name_of(std::string_view command) {
 }
 
 bool is_tracking(std::string_view command) {
-  return name_of(command) == "BX" || name_of(command) == "TX";
+  const std::string_view name = name_of(command);
+  return name == "BX" || name == "TX" || name == "BX2";
+}
+
+/// What a device is asked of itself: OKAY would be no answer.
+bool is_question(std::string_view command) {
+  const std::string_view name = name_of(command);
+  return name == "APIREV" || name == "VER" || name == "GET" || name == "GETINFO";
 }
 
 /// Whether TX or BX asks for transforms and nothing else that changes the reply's form.
@@ -27,6 +34,7 @@ bool asks_for_transforms(std::string_view command) {
 bool answers(std::string_view recorded, std::string_view asked) {
   if (recorded == asked) return true;
   if (name_of(recorded) != name_of(asked)) return false;
+  if (name_of(asked) == "BX2") return true;
   return !is_tracking(asked) || (asks_for_transforms(recorded) && asks_for_transforms(asked));
 }
 
@@ -64,8 +72,12 @@ Result<void, PortFault> ReplayByteLink::write(std::span<const std::byte> bytes) 
   if (turn >= 0) {
     place = static_cast<std::size_t>(turn) + 1;
     answer(turns_[static_cast<std::size_t>(turn)].reply);
+  } else if (tracking && find(command, 0) < 0) {
+    answer("ERROR016BC2\r");
   } else if (tracking) {
     finished_ = true;
+  } else if (is_question(command)) {
+    answer("ERROR016BC2\r");
   } else {
     answer("OKAYA896\r");
   }

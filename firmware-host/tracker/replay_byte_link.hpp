@@ -11,9 +11,10 @@
 namespace orcart {
 
 /// A command is answered with the next recorded reply to the same command, else to a command of the same name
-/// (for TX and BX only where it asked for transforms), else with OKAY. Set-up commands may be answered again
-/// and again; tracking replies are handed out once each, in order, and then the device is silent. One thread;
-/// allocates only on construction.
+/// (for TX and BX only where it asked for transforms), else with OKAY, or as unknown where it is a question
+/// about the device, or a way of asking for poses that the recording never used. Set-up commands may be
+/// answered again and again; tracking replies are handed out once each, in order, and then the device is
+/// silent. One thread; allocates only on construction.
 class ReplayByteLink final : public ByteLink {
  public:
   ReplayByteLink(const ndi::Dialogue& dialogue, Clock& clock, Nanos reply_delay = 5ms);

@@ -1,10 +1,12 @@
 // From an unknown device to one that tracks: the order of commands as a state machine that touches no link.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
 #include "firmware-host/tracker/ndi/command.hpp"
+#include "firmware-host/tracker/ndi/port_reply.hpp"
 #include "firmware-host/tracker/ndi_settings.hpp"
 #include "firmware-host/tracker/tracker_reply.hpp"
 #include "firmware-host/tracker/trouble.hpp"
@@ -29,9 +31,20 @@ struct StartAction {
   std::uint32_t baud = 0;
 };
 
-/// Probe at the rate last used, then at 9600, then by a break; COMM; free old handles; request, upload,
-/// initialise, describe and enable each tool; start tracking. Order as PLUS has it. One thread; allocates
-/// nothing.
+/// A text that needs no memory of its own; what does not fit or cannot be printed is left out.
+class ShortText {
+ public:
+  void assign(std::string_view text) noexcept;
+  std::string_view view() const noexcept { return {letters_.data(), size_}; }
+
+ private:
+  std::array<char, 48> letters_{};
+  std::size_t size_ = 0;
+};
+
+/// Probe at the rate last used, then at 9600, then by a break; COMM; ask what device this is; set its rate;
+/// free old handles; request, upload, initialise, describe and enable each wireless tool; initialise, find
+/// and enable wired ones; start tracking. Order as PLUS has it. One thread; allocates nothing.
 class StartSequence {
  public:
   explicit StartSequence(const NdiSettings& settings) noexcept;
@@ -55,6 +68,11 @@ class StartSequence {
   int failed_tool() const noexcept { return failed_tool_; }
   std::uint8_t handle_of(int tool) const noexcept { return handles_[static_cast<std::size_t>(tool)]; }
   std::uint32_t baud() const noexcept { return line_baud_; }
+  /// As the device tells them; empty where it does not.
+  std::string_view api_revision() const noexcept { return api_revision_.view(); }
+  std::string_view firmware() const noexcept { return firmware_.view(); }
+  /// Vega, Lyra: API family G from revision 003 on.
+  bool knows_frames() const noexcept;
 
  private:
   enum class Step : std::uint8_t {
@@ -70,16 +88,24 @@ class StartSequence {
     comm,
     settle_after_comm,
     comm_line,
+    api_revision,
+    firmware,
+    version,
+    rate,
     list_old,
     free_old,
     request,
     upload,
     list_new,
     initialise,
+    initialise_wired,
+    list_new_again,
     list_initialised,
+    locate,
     describe,
     enable,
     start,
+    beep,
     finished,
     failed,
   };
@@ -95,6 +121,17 @@ class StartSequence {
   bool lists_all_tools(std::string_view text) const noexcept;
   /// Goes to `again` for the next tool, or to `then` after the last.
   void next_tool(Step again, Step then) noexcept;
+  void next_wireless(Step again, Step then) noexcept;
+  void first_wireless(Step step, Step then) noexcept;
+  void next_wired(Step again, Step then) noexcept;
+  void after_wireless() noexcept;
+  /// The handles of a list that are none of our wireless tools'.
+  void keep_wired(const ndi::PortHandles& listed) noexcept;
+  void locate(std::string_view text) noexcept;
+  void all_located() noexcept;
+  void on_version(std::string_view text) noexcept;
+  StartAction set_rate() const noexcept;
+  StartAction ask_or_tell() const noexcept;
   StartAction send(const ndi::Command& command, Nanos patience) const noexcept;
   StartAction tool_command() const noexcept;
 
@@ -106,6 +143,13 @@ class StartSequence {
   std::array<std::uint8_t, 64> old_{};
   std::size_t old_count_ = 0;
   std::size_t old_next_ = 0;
+  std::array<std::uint8_t, 64> wired_{};
+  std::size_t wired_count_ = 0;
+  std::size_t wired_next_ = 0;
+  int wired_rounds_ = 0;  ///< a plug with two sensors shows the second once the first is initialised
+  const bool has_wired_;
+  ShortText api_revision_;
+  ShortText firmware_;
   std::size_t tool_ = 0;
   std::size_t block_ = 0;
   TrackerTrouble trouble_ = TrackerTrouble::none;

@@ -21,7 +21,7 @@ struct ToolReading {
   Eigen::Quaterniond quaternion = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation_mm = Eigen::Vector3d::Zero();
   float error_mm = 0;              ///< RMS of the device's marker fit
-  std::uint32_t port_status = 0;   ///< the low 8 bits, which are documented
+  std::uint32_t port_status = 0;   ///< as in ndi::port_status_words()
   std::uint32_t device_frame = 0;  ///< devices that measure kinds of tools in turn have one for each
 };
 
@@ -29,6 +29,7 @@ struct TrackerReply {
   std::uint32_t device_frame = 0;  ///< the newest of the tools'
   Instant arrived_at{};            ///< host time of the reply's last byte
   Instant asked_at{};              ///< host time at which the poll was handed to the link
+  Nanos wire_time{};  ///< what the reply's bytes took over the line at its rate; 0 without a line
   std::array<ToolReading, kMaxTools> tools;
   int tool_count = 0;
   std::uint16_t system_status = 0;

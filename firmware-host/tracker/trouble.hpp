@@ -10,6 +10,7 @@ enum class TrackerTrouble : std::uint8_t {
   none,
   not_answering,   ///< nothing answers the probe, not even after a break
   device_refuses,  ///< the device answered a command of the start with an error
+  tool_absent,     ///< a wired tool is not in its port
   bad_answer,      ///< the device answered a command of the start with something else
   silent,          ///< replies have stopped coming
   bad_crc,         ///< 3 damaged replies in a row, or 1 % of them in 10 s
@@ -26,6 +27,8 @@ constexpr std::string_view word_for(TrackerTrouble trouble) noexcept {
       return "no tracker answers on the line";
     case TrackerTrouble::device_refuses:
       return "the tracker refuses a command";
+    case TrackerTrouble::tool_absent:
+      return "a wired tool is not in its port";
     case TrackerTrouble::bad_answer:
       return "the tracker answers what was not asked";
     case TrackerTrouble::silent:

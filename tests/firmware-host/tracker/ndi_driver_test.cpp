@@ -262,7 +262,7 @@ TEST(NdiDriver, OpensTheLinkAgainAfterItWasUnplugged) {
 
 TEST(NdiDriver, SaysWhichToolTheDeviceRefused) {
   NdiSettings settings = two_tools();
-  settings.tools[1].memory[80] ^= std::byte{1};
+  settings.tools[1].definition.memory[80] ^= std::byte{1};
   TrackerRig rig(std::move(settings));
   rig.run_for(5s);
   EXPECT_EQ(rig.driver.health(), TrackerHealth::starting);
@@ -305,6 +305,146 @@ TEST(NdiDriver, AsksForNoMemoryWhileItStartsAgain) {
     }
   }));
   EXPECT_EQ(rig.driver.health(), TrackerHealth::live);
+}
+
+NdiSettings asking_by(PollForm form, std::uint32_t baud = 921600) {
+  NdiSettings settings = two_tools(baud);
+  settings.poll = form;
+  return settings;
+}
+
+TEST(NdiDriver, TellsTheSamePosesHoweverItAsksForThem) {
+  for (const PollForm form : {PollForm::tx, PollForm::bx, PollForm::bx2}) {
+    TrackerRig rig(asking_by(form));
+    rig.start();
+    rig.run_for(500ms);
+    EXPECT_EQ(rig.driver.poll_form(), form);
+    const TrackerReply& reply = rig.driver.reply();
+    for (int tool = 0; tool < 2; ++tool) {
+      const ToolReading& reading = reply.readings()[static_cast<std::size_t>(tool)];
+      const TrueToolPose truth =
+          rig.motion.pose_of(tool, rig.device.device_clock().measured_at(reply.device_frame));
+      EXPECT_EQ(reading.state, ToolState::seen);
+      EXPECT_LT((reading.translation_mm - truth.translation_mm).norm(), 0.02)
+          << "TX has hundredths of a millimetre";
+      EXPECT_LT(reading.quaternion.angularDistance(truth.rotation), 3e-4);
+    }
+    EXPECT_EQ(rig.driver.counters().timeouts, 0u);
+    EXPECT_EQ(rig.driver.counters().crc_bad, 0u);
+  }
+}
+
+TEST(NdiDriver, AsksAVegaForFramesAndAnOlderPolarisForWhatItKnows) {
+  TrackerRig vega(asking_by(PollForm::automatic));
+  vega.start();
+  EXPECT_EQ(vega.driver.poll_form(), PollForm::bx2);
+  EXPECT_EQ(vega.driver.api_revision(), "G.003.007");
+  EXPECT_EQ(vega.driver.firmware(), "orcart.001");
+  TrackerRig polaris(asking_by(PollForm::automatic), {.model = NdiModel::polaris});
+  polaris.start();
+  EXPECT_EQ(polaris.driver.poll_form(), PollForm::bx);
+  EXPECT_EQ(polaris.driver.api_revision(), "");
+  EXPECT_EQ(polaris.driver.firmware(), "POLARIS Rev 024");
+  EXPECT_EQ(polaris.driver.baud(), 115200u) << "it refused 921600";
+}
+
+TEST(NdiDriver, AsksForFramesOnlyWhereTheLineBearsThem) {
+  TrackerRig rig(asking_by(PollForm::automatic, 115200));
+  rig.start();
+  EXPECT_EQ(rig.driver.poll_form(), PollForm::bx);
+}
+
+TEST(NdiDriver, FallsBackToASimplerQuestionWhereADeviceDoesNotKnowTheFirst) {
+  TrackerRig rig(asking_by(PollForm::bx2), {.model = NdiModel::spectra});
+  rig.run_for(3s);
+  EXPECT_NE(rig.driver.health(), TrackerHealth::live) << "it was told to use BX2 and nothing else";
+  EXPECT_EQ(rig.driver.trouble(), TrackerTrouble::device_refuses);
+  TrackerRig any(asking_by(PollForm::automatic), {.model = NdiModel::spectra});
+  any.start();
+  EXPECT_EQ(any.driver.poll_form(), PollForm::bx);
+}
+
+TEST(NdiDriver, TellsAFrameOfBx2OnceAndNoticesAStandingOne) {
+  TrackerRig rig(asking_by(PollForm::bx2), {.clock_drift_ppm = -1000});
+  rig.start();
+  rig.run_for(20s, [](const DriverReport& r) { EXPECT_EQ(r.health, TrackerHealth::live); });
+  EXPECT_GT(rig.driver.counters().repeats, 0u) << "polls and frames have two clocks";
+  const Instant now = rig.clock.now();
+  rig.device.faults().add({.fault = NdiFault::frozen_frame, .from = now, .until = now + 1s});
+  const Nanos took =
+      time_until(rig, 1s, [](const DriverReport& r) { return r.health == TrackerHealth::lost; });
+  EXPECT_LE(took, 4 * period_of(60));
+  EXPECT_EQ(rig.driver.trouble(), TrackerTrouble::frame_stuck);
+}
+
+TEST(NdiDriver, TracksWiredToolsByThePortTheyArePluggedInto) {
+  NdiSettings settings{
+      .tools = {TrackedTool(TrackedTool::Port{.number = 2}), TrackedTool(TrackedTool::Port{.number = 1})}};
+  TrackerRig rig(std::move(settings), {.model = NdiModel::aurora});
+  const auto plug = [&](std::string_view part) { return simulated_tool(part, 2).memory; };
+  ASSERT_TRUE(rig.device.plug_in(plug("ONE")) && rig.device.plug_in(plug("TWO")));
+  rig.start();
+  rig.run_for(100ms);
+  for (int tool = 0; tool < 2; ++tool) {
+    const ToolReading& reading = rig.driver.reply().readings()[static_cast<std::size_t>(tool)];
+    EXPECT_EQ(reading.state, ToolState::seen);
+    const TrueToolPose truth =
+        rig.motion.pose_of(1 - tool, rig.device.device_clock().measured_at(rig.driver.reply().device_frame));
+    EXPECT_LT((reading.translation_mm - truth.translation_mm).norm(), 1e-3);
+  }
+}
+
+TEST(NdiDriver, TracksAWiredAndAWirelessToolTogether) {
+  NdiSettings settings{.tools = {simulated_tool("SCOPE", 2), TrackedTool(TrackedTool::Port{.number = 1})}};
+  TrackerRig rig(std::move(settings));
+  ASSERT_TRUE(rig.device.plug_in(simulated_tool("WIRED", 1).memory));
+  rig.start();
+  rig.run_for(100ms);
+  EXPECT_EQ(rig.driver.reply().tools[0].state, ToolState::seen);
+  EXPECT_EQ(rig.driver.reply().tools[1].state, ToolState::seen);
+}
+
+TEST(NdiDriver, SaysWhichPortHasNoTool) {
+  NdiSettings settings{.tools = {TrackedTool(TrackedTool::Port{.number = 3})}};
+  TrackerRig rig(std::move(settings));
+  ASSERT_TRUE(rig.device.plug_in(simulated_tool("ONE", 2).memory));
+  rig.run_for(5s);
+  EXPECT_EQ(rig.driver.trouble_sentence(), "a wired tool is not in its port for tool in port 3");
+}
+
+TEST(NdiDriver, PassesOnThatTheSensorWasBumpedUntilSomebodyHasVerified) {
+  for (const PollForm form : {PollForm::tx, PollForm::bx, PollForm::bx2}) {
+    TrackerRig rig(asking_by(form));
+    rig.start();
+    rig.run_for(100ms);
+    EXPECT_FALSE(rig.driver.bumped());
+    rig.device.faults().add({.fault = NdiFault::bump, .from = rig.clock.now()});
+    rig.run_for(100ms, [](const DriverReport& r) { EXPECT_EQ(r.health, TrackerHealth::live); });
+    EXPECT_TRUE(rig.driver.bumped());
+    EXPECT_EQ(rig.driver.counters().restarts, 0u);
+    rig.driver.forget_alerts();
+    EXPECT_FALSE(rig.driver.bumped());
+  }
+}
+
+TEST(NdiDriver, BeepsWhenItTracksAndWhenItIsToldToInOnePollsPlace) {
+  NdiSettings settings = two_tools();
+  settings.beeps_when_tracking = 2;
+  TrackerRig rig(std::move(settings));
+  rig.start();
+  EXPECT_EQ(rig.device.beeps_heard(), 2u);
+  rig.run_for(500ms);
+  rig.driver.beep(3);
+  rig.run_for(500ms, [](const DriverReport& r) { EXPECT_EQ(r.health, TrackerHealth::live); });
+  EXPECT_EQ(rig.device.beeps_heard(), 5u);
+  EXPECT_LE(rig.driver.counters().polls - rig.driver.counters().replies, 2u) << "and one may be on its way";
+}
+
+TEST(NdiDriver, FindsASlowerRateWhereTheLineCannotGoFaster) {
+  TrackerRig rig(asking_by(PollForm::automatic, 921600), {.model = NdiModel::polaris});
+  rig.start();
+  EXPECT_EQ(rig.driver.baud(), 115200u);
+  EXPECT_EQ(rig.device.baud(rig.clock.now()), 115200u);
 }
 
 }  // namespace

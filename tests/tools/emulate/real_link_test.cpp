@@ -139,7 +139,7 @@ bool comes_back_over(ByteLink& link, std::uint32_t baud) {
   while (clock.now() < end) {
     link.wait(std::min(end, driver.next_due()));
     const DriverReport report = driver.step(clock.now());
-    lost = lost || report.health == TrackerHealth::lost;
+    lost = lost || report.trouble == TrackerTrouble::disconnected;
     if (lost && report.new_reply && driver.reply().tools[1].state == ToolState::seen) return true;
   }
   return false;
