@@ -1,5 +1,5 @@
-// Builds the cluster tree: spatial halving into clusters of 48 triangles, eight halves to a node, spheres
-// around all.
+// Builds the cluster tree: spatial halving into clusters of 48 triangles, eight clusters to a node of the
+// lowest level, eight full nodes to one above, spheres around all.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,11 +29,11 @@ class ClusterTreeBuilder {
     std::size_t level = 0;
   };
 
-  std::pair<Range, Range> split(Range range);
+  std::pair<Range, Range> split(Range range, std::uint32_t unit);
   std::vector<Range> split_into_eight(Range range);
   Sphere sphere_around(Range range) const;
-  void mark_part();
   void add_cluster(Range range);
+  void pad();
   std::uint32_t add_node();
   void fill_place(std::uint32_t node, std::size_t place, Range range, std::uint32_t child);
 
@@ -52,8 +52,10 @@ ClusterTreeBuilder::ClusterTreeBuilder(const TriangleMesh& mesh)
     centroids_.emplace_back((mesh.vertices_mm[t[0]] + mesh.vertices_mm[t[1]] + mesh.vertices_mm[t[2]]) / 3);
 }
 
-/// Two halves along the longest side of the centroids' box; the first a multiple of a full cluster.
-std::pair<ClusterTreeBuilder::Range, ClusterTreeBuilder::Range> ClusterTreeBuilder::split(Range range) {
+/// Two halves along the longest side of the centroids' box; the first the nearest multiple of `unit`
+/// triangles.
+std::pair<ClusterTreeBuilder::Range, ClusterTreeBuilder::Range> ClusterTreeBuilder::split(
+    Range range, std::uint32_t unit) {
   Eigen::Vector3f low = centroids_[order_[range.first]], high = low;
   for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
     low = low.cwiseMin(centroids_[order_[i]]);
@@ -61,8 +63,7 @@ std::pair<ClusterTreeBuilder::Range, ClusterTreeBuilder::Range> ClusterTreeBuild
   }
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
-  constexpr auto kFull = static_cast<std::uint32_t>(ClusterTree::kMaxTriangles);
-  const std::uint32_t left = (range.count / 2 + kFull - 1) / kFull * kFull;
+  const std::uint32_t left = std::max(1U, (range.count + unit) / (2 * unit)) * unit;
   const auto begin = order_.begin() + range.first;
   std::nth_element(begin, begin + left, begin + range.count, [this, axis](std::uint32_t a, std::uint32_t b) {
     const float at_a = centroids_[a][axis], at_b = centroids_[b][axis];
@@ -71,17 +72,21 @@ std::pair<ClusterTreeBuilder::Range, ClusterTreeBuilder::Range> ClusterTreeBuild
   return {{range.first, left}, {range.first + left, range.count - left}};
 }
 
-/// Splits the largest part until there are eight or all are clusters.
+/// Splits the largest part until each fits into a subtree of the level below; full subtrees leave no places
+/// empty at the bottom, where the walk spends its time. In the order of the triangles.
 std::vector<ClusterTreeBuilder::Range> ClusterTreeBuilder::split_into_eight(Range range) {
+  auto unit = static_cast<std::uint32_t>(ClusterTree::kMaxTriangles);
+  while (unit * ClusterTree::kWidth < range.count) unit *= ClusterTree::kWidth;
   std::vector<Range> parts{range};
-  while (parts.size() < ClusterTree::kWidth) {
+  for (;;) {
     const auto largest = std::max_element(parts.begin(), parts.end(),
                                           [](const Range& a, const Range& b) { return a.count < b.count; });
-    if (largest->count <= ClusterTree::kMaxTriangles) break;
-    const auto [left, right] = split(*largest);
+    if (largest->count <= unit) break;
+    const auto [left, right] = split(*largest, unit);
     *largest = left;
     parts.push_back(right);
   }
+  std::sort(parts.begin(), parts.end(), [](const Range& a, const Range& b) { return a.first < b.first; });
   return parts;
 }
 
@@ -108,13 +113,8 @@ ClusterTreeBuilder::Sphere ClusterTreeBuilder::sphere_around(Range range) const 
   return best;
 }
 
-void ClusterTreeBuilder::mark_part() {
-  tree_.parts_.push_back({.first_vertex = static_cast<std::uint32_t>(tree_.x_.size()),
-                          .first_triangle = static_cast<std::uint32_t>(tree_.corners_.size())});
-}
-
 void ClusterTreeBuilder::add_cluster(Range range) {
-  mark_part();
+  tree_.first_vertex_.push_back(static_cast<std::uint32_t>(tree_.x_.size()));
   std::uint8_t used = 0;
   for (std::uint32_t i = range.first; i < range.first + range.count; ++i) {
     std::array<std::uint8_t, 3> corners{};
@@ -136,6 +136,14 @@ void ClusterTreeBuilder::add_cluster(Range range) {
     local_of_vertex_[tree_.vertex_ids_[i]] = -1;
 }
 
+/// The end of the last cluster, and what whole vectors may read beyond it.
+void ClusterTreeBuilder::pad() {
+  tree_.first_vertex_.push_back(static_cast<std::uint32_t>(tree_.x_.size()));
+  for (std::vector<float>* coordinate : {&tree_.x_, &tree_.y_, &tree_.z_})
+    coordinate->resize(coordinate->size() + ClusterTree::kPadding, 0.F);
+  tree_.corners_.resize(tree_.corners_.size() + ClusterTree::kPadding);
+}
+
 std::uint32_t ClusterTreeBuilder::add_node() {
   ClusterTree::Node node{};
   node.radius.fill(-std::numeric_limits<float>::infinity());
@@ -151,12 +159,15 @@ void ClusterTreeBuilder::fill_place(std::uint32_t node, std::size_t place, Range
   at.z[place] = sphere.centre.z();
   at.radius[place] = sphere.radius * 1.0001F + 1e-3F;  // queries round in single precision
   at.child[place] = child;
+  constexpr auto kFull = static_cast<std::uint32_t>(ClusterTree::kMaxTriangles);
+  at.cluster[place] = range.first / kFull;  // ranges begin at multiples of a full cluster
+  for (std::size_t after = place + 1; after <= ClusterTree::kWidth; ++after)
+    at.cluster[after] = (range.first + range.count + kFull - 1) / kFull;
 }
 
 Result<ClusterTree> ClusterTreeBuilder::build() {
-  std::vector<Pending> pending{
-      {.range = {0, static_cast<std::uint32_t>(order_.size())}, .node = add_node(), .level = 1}};
-  std::vector<Range> leaves;  // clusters are numbered in the order of their triangles
+  const auto count = static_cast<std::uint32_t>(order_.size());
+  std::vector<Pending> pending{{.range = {0, count}, .node = add_node(), .level = 1}};
   while (!pending.empty()) {
     const Pending at = pending.back();
     pending.pop_back();
@@ -165,16 +176,16 @@ Result<ClusterTree> ClusterTreeBuilder::build() {
     const std::vector<Range> parts = split_into_eight(at.range);
     for (std::size_t place = 0; place < parts.size(); ++place) {
       const bool leaf = parts[place].count <= ClusterTree::kMaxTriangles;
-      const std::uint32_t child = leaf ? static_cast<std::uint32_t>(leaves.size()) : add_node();
-      fill_place(at.node, place, parts[place], leaf ? child | ClusterTree::kLeaf : child);
-      if (leaf)
-        leaves.push_back(parts[place]);
-      else
-        pending.push_back({.range = parts[place], .node = child, .level = at.level + 1});
+      const std::uint32_t child = leaf ? 0 : add_node();
+      fill_place(at.node, place, parts[place], child);
+      if (!leaf) pending.push_back({.range = parts[place], .node = child, .level = at.level + 1});
     }
   }
-  for (const Range& leaf : leaves) add_cluster(leaf);
-  mark_part();
+  constexpr auto kFull = static_cast<std::uint32_t>(ClusterTree::kMaxTriangles);
+  for (std::uint32_t first = 0; first < count; first += kFull)
+    add_cluster({.first = first, .count = std::min(kFull, count - first)});
+  tree_.triangle_count_ = count;
+  pad();
   return std::move(tree_);
 }
 

@@ -92,6 +92,34 @@ void trace_packet(RTCScene scene, const Eigen::Vector3f& origin_mm,
                               .b2 = query.hit.v[lane]};
 }
 
+/// The same question as hidden() for at most kPacket points.
+void trace_shadows(RTCScene scene, const Eigen::Vector3f& origin_mm,
+                   std::span<const Eigen::Vector3f> points_mm, float margin_mm,
+                   std::span<std::uint8_t> hidden) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCRay8 query{};
+  alignas(32) int valid[kPacket] = {};
+  for (std::size_t lane = 0; lane < points_mm.size(); ++lane) {
+    const Eigen::Vector3f to_point = points_mm[lane] - origin_mm;
+    const float distance_mm = to_point.norm();
+    const RTCRay ray = make_ray(origin_mm, to_point / distance_mm, 0, distance_mm - margin_mm);
+    valid[lane] = distance_mm > margin_mm && traceable(ray) ? -1 : 0;
+    query.org_x[lane] = ray.org_x;
+    query.org_y[lane] = ray.org_y;
+    query.org_z[lane] = ray.org_z;
+    query.dir_x[lane] = ray.dir_x;
+    query.dir_y[lane] = ray.dir_y;
+    query.dir_z[lane] = ray.dir_z;
+    query.tfar[lane] = ray.tfar;
+    query.mask[lane] = ~0U;
+  }
+  rtcOccluded8(valid, scene, &context, &query);
+  for (std::size_t lane = 0; lane < points_mm.size(); ++lane)
+    hidden[lane] = valid[lane] != 0 && query.tfar[lane] < 0 ? 1 : 0;
+}
+
 }  // namespace
 
 RayScene::RayScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -150,6 +178,14 @@ bool RayScene::hidden(const Eigen::Vector3f& origin_mm, const Eigen::Vector3f& p
   rtcInitIntersectContext(&context);
   rtcOccluded1(state_->scene, &context, &ray);
   return ray.tfar < 0;  // Embree's word for "occluded" is minus infinity
+}
+
+void RayScene::hidden_many(const Eigen::Vector3f& origin_mm, std::span<const Eigen::Vector3f> points_mm,
+                           float margin_mm, std::span<std::uint8_t> hidden) const noexcept {
+  const std::size_t count = std::min(points_mm.size(), hidden.size());
+  for (std::size_t first = 0; first < count; first += kPacket)
+    trace_shadows(state_->scene, origin_mm, points_mm.subspan(first, std::min(kPacket, count - first)),
+                  margin_mm, hidden.subspan(first));
 }
 
 void RayScene::nearest_many(const Eigen::Vector3f& origin_mm, std::span<const Eigen::Vector3f> directions,

@@ -33,7 +33,11 @@ class RayScene {
   /// are left out, so that the point's own triangle does not hide it.
   bool hidden(const Eigen::Vector3f& origin_mm, const Eigen::Vector3f& point_mm,
               float margin_mm) const noexcept;
-  /// The same for many directions from one origin (unit, any order): hits[i].distance_mm < 0 where missed.
+  /// The same for many points from one origin, neighbours together: hidden[i] is 1 or 0.
+  void hidden_many(const Eigen::Vector3f& origin_mm, std::span<const Eigen::Vector3f> points_mm,
+                   float margin_mm, std::span<std::uint8_t> hidden) const noexcept;
+  /// Nearest hits for many directions from one origin (unit, any order): hits[i].distance_mm < 0 where
+  /// missed.
   void nearest_many(const Eigen::Vector3f& origin_mm, std::span<const Eigen::Vector3f> directions,
                     float far_mm, std::span<RayHit> hits) const noexcept;
 

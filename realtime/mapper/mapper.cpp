@@ -5,10 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "realtime/geometry/cluster_tree.hpp"
+#include "realtime/geometry/cone_walk.hpp"
 #include "realtime/geometry/ray_scene.hpp"
-#include "realtime/mapper/cone_sieve.hpp"
-#include "realtime/mapper/facing.hpp"
+#include "realtime/mapper/cluster_sort.hpp"
 #include "realtime/mapper/five_rays.hpp"
 #include "realtime/mapper/occlusion.hpp"
 
@@ -31,14 +30,13 @@ struct Mapper::State {
   // What the surface and the scope fix.
   ClusterTree tree;
   RayScene surface;
-  SeenFrom seen_from;
   MapperLimits limits;
   ConeShape shape;
   FiveDirections lens_rays, rectified_rays;
-  double cos_max_obliquity;
+  SortRule rule;  ///< its cone and `facing` are the view's
   // What one view sets.
   Occlusion occlusion;
-  ConeSieve sieve{};
+  SieveScratch scratch{};
   Pose<M, C> X_MC{};
   TextureMode mode = TextureMode::perspective;
   FiveRays rays{};
@@ -52,7 +50,6 @@ struct Mapper::State {
   void start_part(CutoutPatch& patch) const noexcept;
   bool next_cluster() noexcept;
   void take_cluster(CutoutPatch& patch) noexcept;
-  void sort_triangle(const ClusterTree::Cluster& cluster, std::size_t i, CutoutPatch& patch) noexcept;
 };
 
 void Mapper::State::start_part(CutoutPatch& patch) const noexcept {
@@ -68,36 +65,24 @@ void Mapper::State::start_part(CutoutPatch& patch) const noexcept {
 
 /// Puts the next cluster into `waiting`, unless one waits already.
 bool Mapper::State::next_cluster() noexcept {
-  has_waiting = has_waiting || walk.next(tree, cone, waiting);
+  has_waiting = has_waiting || walk.next(tree, waiting);
   return has_waiting;
 }
 
 void Mapper::State::take_cluster(CutoutPatch& patch) noexcept {
+  const ClusterSorting sorting = sort_cluster(tree, waiting, rule, scratch);
   const ClusterTree::Cluster cluster = tree.cluster(waiting.cluster);
-  if (!waiting.inside) sieve.load(cluster, cone);
-  for (std::size_t i = 0; i < cluster.corners.size(); ++i)
-    if (waiting.inside || sieve.meets(cluster.corners[i], cone)) sort_triangle(cluster, i, patch);
+  std::uint64_t painted = sorting.front;
+  if (rule.facing && limits.test_occlusion && painted != 0)
+    painted &= ~occlusion.hidden(surface, cluster, painted);
+  const auto append = [&](std::vector<std::uint32_t>& list, std::uint64_t which) {
+    for (; which != 0; which &= which - 1)
+      list.push_back(cluster.triangle_ids[static_cast<std::size_t>(__builtin_ctzll(which))]);
+  };
+  append(patch.triangles, painted);
+  append(patch.occluders, sorting.in_cone & ~painted);
+  patch.triangles_in_cone += static_cast<std::uint32_t>(__builtin_popcountll(sorting.in_cone));
   has_waiting = false;
-}
-
-void Mapper::State::sort_triangle(const ClusterTree::Cluster& cluster, std::size_t i,
-                                  CutoutPatch& patch) noexcept {
-  ++patch.triangles_in_cone;
-  const std::uint32_t triangle = cluster.triangle_ids[i];
-  if (mode == TextureMode::paper) {
-    patch.triangles.push_back(triangle);
-    return;
-  }
-  std::array<Eigen::Vector3f, 3> corners_mm;
-  std::array<std::uint32_t, 3> vertices{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::uint8_t at = cluster.corners[i][c];
-    corners_mm[c] = {cluster.x[at], cluster.y[at], cluster.z[at]};
-    vertices[c] = cluster.vertex_ids[at];
-  }
-  const bool painted = facing_of(corners_mm, cone.apex_mm, seen_from, cos_max_obliquity) == Facing::front &&
-                       !(limits.test_occlusion && occlusion.hidden(surface, vertices, corners_mm));
-  (painted ? patch.triangles : patch.occluders).push_back(triangle);
 }
 
 std::size_t patch_capacity(const MapperLimits& limits) {
@@ -120,16 +105,18 @@ Result<Mapper> Mapper::create(const Surface& surface, SeenFrom seen_from, const 
   if (!tree) return tl::unexpected(tree.error());
   auto rays = RayScene::create(surface.mesh);
   if (!rays) return tl::unexpected(rays.error());
-  return Mapper(std::unique_ptr<State>(
-      new State{.tree = std::move(*tree),
-                .surface = std::move(*rays),
-                .seen_from = seen_from,
-                .limits = usable(limits),
-                .shape = {.half_angle_rad = scope.cone_half_angle_rad, .far_mm = scope.far_mm},
-                .lens_rays = lens_directions(scope),
-                .rectified_rays = rectified_directions(scope),
-                .cos_max_obliquity = std::cos(std::min(limits.max_obliquity_rad, kWidestCone_rad)),
-                .occlusion = Occlusion(surface.mesh.vertices_mm.size())}));
+  return Mapper(std::unique_ptr<State>(new State{
+      .tree = std::move(*tree),
+      .surface = std::move(*rays),
+      .limits = usable(limits),
+      .shape = {.half_angle_rad = scope.cone_half_angle_rad, .far_mm = scope.far_mm},
+      .lens_rays = lens_directions(scope),
+      .rectified_rays = rectified_directions(scope),
+      .rule = {.cone = {},
+               .seen_from = seen_from,
+               .cos_max_obliquity =
+                   static_cast<float>(std::cos(std::min(limits.max_obliquity_rad, kWidestCone_rad)))},
+      .occlusion = Occlusion(surface.mesh.vertices_mm.size())}));
 }
 
 void Mapper::begin(const Pose<M, C>& X_MC, TextureMode mode) noexcept {
@@ -140,9 +127,11 @@ void Mapper::begin(const Pose<M, C>& X_MC, TextureMode mode) noexcept {
   const bool paper = mode == TextureMode::paper;
   s.rays = trace_five_rays(s.surface, X_MC, paper ? s.rectified_rays : s.lens_rays, s.shape.far_mm);
   s.paper = paper ? paper_projection(X_MC, s.rays, s.shape.half_angle_rad) : PaperProjection{};
+  s.rule.cone = numbers_of(s.cone);
+  s.rule.facing = !paper;
   s.occlusion.begin(s.cone.apex_mm);
   s.walk = ConeWalk{};  // over before it begins, where paper mode has no centre
-  if (!paper || s.paper.valid) s.walk.begin(s.tree);
+  if (!paper || s.paper.valid) s.walk.begin(s.tree, s.cone);
   s.has_waiting = false;
   s.first = true;
   s.done = false;

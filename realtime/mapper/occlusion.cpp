@@ -22,22 +22,47 @@ void Occlusion::begin(const Eigen::Vector3f& apex_mm) noexcept {
   apex_mm_ = apex_mm;
 }
 
-bool Occlusion::vertex_hidden(const RayScene& surface, std::uint32_t vertex,
-                              const Eigen::Vector3f& at_mm) noexcept {
-  std::uint32_t& stamp = seen_at_[vertex];
-  if (stamp >> 1 != view_) {
-    ++rays_;
-    stamp = view_ << 1 | (surface.hidden(apex_mm_, at_mm, kMargin_mm) ? 1U : 0U);
-  }
-  return (stamp & 1U) != 0;
+void Occlusion::trace(const RayScene& surface, std::size_t count) noexcept {
+  surface.hidden_many(apex_mm_, {point_mm_.data(), count}, kMargin_mm, {hidden_.data(), count});
+  rays_ += static_cast<std::uint32_t>(count);
 }
 
-bool Occlusion::hidden(const RayScene& surface, const std::array<std::uint32_t, 3>& vertices,
-                       const std::array<Eigen::Vector3f, 3>& corners_mm) noexcept {
-  for (std::size_t i = 0; i < 3; ++i)
-    if (!vertex_hidden(surface, vertices[i], corners_mm[i])) return false;
-  ++rays_;
-  return surface.hidden(apex_mm_, (corners_mm[0] + corners_mm[1] + corners_mm[2]) / 3, kMargin_mm);
+/// Brings the stamps of the triangles' corners up to this view.
+void Occlusion::trace_vertices(const RayScene& surface, const ClusterTree::Cluster& cluster,
+                               std::uint64_t which) noexcept {
+  std::size_t count = 0;
+  for (; which != 0; which &= which - 1)
+    for (const std::uint8_t corner : cluster.corners[static_cast<std::size_t>(__builtin_ctzll(which))]) {
+      const std::uint32_t vertex = cluster.vertex_ids[corner];
+      if (seen_at_[vertex] >> 1 == view_) continue;
+      seen_at_[vertex] = view_ << 1;
+      owner_[count] = vertex;
+      point_mm_[count++] = {cluster.x[corner], cluster.y[corner], cluster.z[corner]};
+    }
+  trace(surface, count);
+  for (std::size_t i = 0; i < count; ++i) seen_at_[owner_[i]] |= hidden_[i];
+}
+
+std::uint64_t Occlusion::hidden(const RayScene& surface, const ClusterTree::Cluster& cluster,
+                                std::uint64_t which) noexcept {
+  trace_vertices(surface, cluster, which);
+  std::size_t count = 0;
+  for (; which != 0; which &= which - 1) {
+    const auto triangle = static_cast<std::uint32_t>(__builtin_ctzll(which));
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    std::uint32_t all_hidden = 1;
+    for (const std::uint8_t corner : cluster.corners[triangle]) {
+      all_hidden &= seen_at_[cluster.vertex_ids[corner]];
+      sum += Eigen::Vector3f(cluster.x[corner], cluster.y[corner], cluster.z[corner]);
+    }
+    if ((all_hidden & 1U) == 0) continue;
+    owner_[count] = triangle;
+    point_mm_[count++] = sum / 3;
+  }
+  trace(surface, count);
+  std::uint64_t behind = 0;
+  for (std::size_t i = 0; i < count; ++i) behind |= std::uint64_t{hidden_[i]} << owner_[i];
+  return behind;
 }
 
 }  // namespace orcart

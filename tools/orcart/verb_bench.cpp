@@ -12,17 +12,16 @@ namespace orcart {
 namespace {
 
 constexpr const char* kExample =
-    "Example:\n  orcart bench mapper --surface brain_50k.ply --poses poses200.csv --json\n\n"
-    "Poses are lines of ten numbers: tip xyz, dir xyz, up xyz, distance_mm. Pin it to a core for steady "
-    "times:\n"
-    "  taskset -c 1 orcart bench mapper ...";
+    "Example:\n  orcart bench mapper --surface brain_50k.ply --poses poses200.csv --form cutout --json\n\n"
+    "Poses are lines of ten numbers: tip xyz, dir xyz, up xyz, distance_mm. It stays on one processor; "
+    "`taskset -c 1` before it\nchooses which. Forms: cutout (five rays, whole triangles with texture "
+    "coordinates), clip (cut by the cone), ranges\n(clusters to draw; the shader projects), live (the cart's "
+    "mapper with facing and hiding).";
 
 struct Arguments {
   std::string surface, poses;
   BenchCone cone;
-  SeenFrom seen_from = SeenFrom::outside;
-  TextureMode mode = TextureMode::perspective;
-  std::uint32_t rounds = 50;
+  BenchSettings settings;
   bool without_occlusion = false, json = false;
 };
 
@@ -31,18 +30,19 @@ Result<MapperBenchReport> bench(const Arguments& arguments) {
   if (!surface) return tl::unexpected(surface.error());
   const auto poses = read_bench_poses(arguments.poses);
   if (!poses) return tl::unexpected(poses.error());
-  const MapperLimits limits{.test_occlusion = !arguments.without_occlusion};
-  auto mapper = Mapper::create(*surface, arguments.seen_from, bench_scope(arguments.cone), limits);
-  if (!mapper) return tl::unexpected(mapper.error());
-  CutoutPatch patch(patch_capacity(limits));
-  return run_mapper_bench(*mapper, patch, *poses, arguments.rounds, arguments.mode);
+  BenchSettings settings = arguments.settings;
+  settings.limits.test_occlusion = !arguments.without_occlusion;
+  pin_this_thread();
+  return run_mapper_bench(*surface, bench_scope(arguments.cone), *poses, settings);
 }
 
 void print(const MapperBenchReport& report) {
-  std::printf("a view: median %.1f us, p99 %.1f us, max %.1f us; worst pose's median %.1f us\n",
+  std::printf("a view: median %.2f us, p99 %.2f us, max %.1f us; worst pose's median %.2f us\n",
               report.median_us, report.p99_us, report.max_us, report.worst_pose_median_us);
-  std::printf("triangles in the cone: median %u, max %u; steps a view: at most %u, p99 %.1f us\n",
+  std::printf("triangles: median %u, max %u; steps a view: at most %u, p99 %.2f us\n",
               report.triangles_median, report.triangles_max, report.steps_max, report.step_p99_us);
+  if (report.occlusion_median_us) std::printf("of it hiding: %.1f us\n", *report.occlusion_median_us);
+  std::printf("the tree: %.1f bytes a triangle\n", report.tree_bytes_per_triangle);
   if (report.heap_calls)
     std::printf("heap calls: %llu\n", static_cast<unsigned long long>(*report.heap_calls));
 }
@@ -77,16 +77,29 @@ void add_bench(CLI::App& app, int& exit_code) {
   mapper->add_option("--far", arguments->cone.far_mm, "far plane, mm")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  mapper->add_option("--seen-from", arguments->seen_from, "outside (default) or inside")
+  BenchSettings& settings = arguments->settings;
+  mapper->add_option("--form", settings.form, "cutout (default), clip, ranges or live")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, BenchForm>{{"cutout", BenchForm::cutout},
+                                                                           {"clip", BenchForm::clip},
+                                                                           {"ranges", BenchForm::ranges},
+                                                                           {"live", BenchForm::live}}));
+  mapper
+      ->add_option("--rule", settings.rule,
+                   "of cutout and clip: touching (default, every triangle that meets the cone) or corner "
+                   "(those with a corner in it)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, CutoutRule>{
+          {"touching", CutoutRule::touching}, {"corner", CutoutRule::corner}}));
+  mapper->add_option("--seen-from", settings.seen_from, "of live: outside (default) or inside")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, SeenFrom>{{"outside", SeenFrom::outside}, {"inside", SeenFrom::inside}}));
-  mapper->add_option("--mode", arguments->mode, "perspective (default) or paper")
+  mapper->add_option("--mode", settings.mode, "of live: perspective (default) or paper")
       ->transform(CLI::CheckedTransformer(std::map<std::string, TextureMode>{
           {"perspective", TextureMode::perspective}, {"paper", TextureMode::paper}}));
-  mapper->add_option("--rounds", arguments->rounds, "how often all poses are run")
+  mapper->add_option("--rounds", settings.rounds, "how often all poses are run")
       ->capture_default_str()
       ->check(CLI::Range(1, 1'000'000));
-  mapper->add_flag("--no-occlusion", arguments->without_occlusion, "leave what is hidden to the painter");
+  mapper->add_flag("--no-occlusion", arguments->without_occlusion,
+                   "of live: leave what is hidden to the painter");
   mapper->add_flag("--json", arguments->json, "one JSON object");
   mapper->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "realtime/geometry/cone_walk.hpp"
 #include "tests/realtime/geometry/analytic_meshes.hpp"
 #include "tests/support/zero_allocation.hpp"
 
@@ -57,6 +58,24 @@ TEST(ClusterTree, TakesAtMost24BytesATriangle) {
   EXPECT_LE(ClusterTree::create(mesh).value().bytes(), 24 * mesh.triangles.size());
 }
 
+TEST(ClusterTree, KeepsSubtreesTogetherAndFillsItsLowestNodes) {
+  const TriangleMesh mesh = testing::icosphere(40, 5);
+  const ClusterTree tree = ClusterTree::create(mesh).value();
+  std::size_t lowest = 0;
+  for (const ClusterTree::Node& node : tree.nodes()) {
+    std::size_t clusters = 0;
+    for (std::size_t place = 0; place < ClusterTree::kWidth; ++place) {
+      const std::uint32_t first = node.cluster[place], end = node.cluster[place + 1];
+      clusters += end - first == 1 ? 1 : 0;
+      if (end - first < 2) continue;
+      EXPECT_EQ(tree.nodes()[node.child[place]].cluster.front(), first);
+      EXPECT_EQ(tree.nodes()[node.child[place]].cluster.back(), end);
+    }
+    lowest += clusters > 0 ? 1 : 0;
+  }
+  EXPECT_EQ(lowest, (tree.cluster_count() + ClusterTree::kWidth - 1) / ClusterTree::kWidth);
+}
+
 TEST(ClusterTree, StandsTrianglesThatAllLieOnOnePoint) {
   TriangleMesh mesh;
   mesh.vertices_mm = {{1, 2, 3}};
@@ -86,9 +105,9 @@ TEST(ConeWalk, MissesNoVertexInTheConeAndCallsNoneInsideThatIsNot) {
     const ViewingCone cone = viewing_cone(X_MC, shape);
     std::vector<char> visited(mesh.triangles.size(), 0);
     ConeWalk walk;
-    walk.begin(tree);
+    walk.begin(tree, cone);
     ClusterVisit visit;
-    while (walk.next(tree, cone, visit))
+    while (walk.next(tree, visit))
       for (const std::uint32_t t : tree.cluster(visit.cluster).triangle_ids) {
         EXPECT_EQ(visited[t]++, 0);
         for (const std::uint32_t v : mesh.triangles[t])
@@ -102,14 +121,37 @@ TEST(ConeWalk, MissesNoVertexInTheConeAndCallsNoneInsideThatIsNot) {
   EXPECT_GT(called_inside, 10000U);
 }
 
+TEST(ConeWalk, FindsTheSameClustersInRunsAsOneByOne) {
+  const TriangleMesh mesh = testing::icosphere(40, 5);
+  const ClusterTree tree = ClusterTree::create(mesh).value();
+  std::mt19937 random(12);
+  for (int i = 0; i < 100; ++i) {
+    const ViewingCone cone = viewing_cone(random_pose(random), {.half_angle_rad = 0.6, .far_mm = 45});
+    std::vector<int> in_visits(tree.cluster_count(), 0), in_runs = in_visits;
+    ConeWalk walk;
+    walk.begin(tree, cone);
+    ClusterVisit visit;
+    while (walk.next(tree, visit)) in_visits[visit.cluster] += visit.inside ? 2 : 1;
+    walk.begin(tree, cone);
+    ClusterRun run;
+    std::uint32_t end = 0;
+    while (walk.next(tree, run)) {
+      EXPECT_GE(run.first, end);
+      end = run.end;
+      for (std::uint32_t c = run.first; c < run.end; ++c) in_runs[c] += run.inside ? 2 : 1;
+    }
+    EXPECT_EQ(in_visits, in_runs);
+  }
+}
+
 TEST(ConeWalk, VisitsNothingForAPoseThatIsNotANumber) {
   const ClusterTree tree = ClusterTree::create(testing::icosphere(40, 3)).value();
   Pose<M, C> X_MC;
   X_MC.translation_mm.x() = NAN;
   ConeWalk walk;
-  walk.begin(tree);
+  walk.begin(tree, viewing_cone(X_MC, {.half_angle_rad = 0.6, .far_mm = 60}));
   ClusterVisit visit;
-  EXPECT_FALSE(walk.next(tree, viewing_cone(X_MC, {.half_angle_rad = 0.6, .far_mm = 60}), visit));
+  EXPECT_FALSE(walk.next(tree, visit));
 }
 
 TEST(ConeWalk, AllocatesNothing) {
@@ -118,8 +160,8 @@ TEST(ConeWalk, AllocatesNothing) {
   ConeWalk walk;
   ClusterVisit visit;
   EXPECT_TRUE(testing::zero_allocation([&] {
-    walk.begin(tree);
-    while (walk.next(tree, cone, visit)) {
+    walk.begin(tree, cone);
+    while (walk.next(tree, visit)) {
     }
   }));
 }

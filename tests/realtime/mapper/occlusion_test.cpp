@@ -9,6 +9,7 @@ namespace orcart {
 namespace {
 
 using Corners = std::array<Eigen::Vector3f, 3>;
+using Ids = std::array<std::uint32_t, 3>;
 
 const Corners kBehind{{{0, 1, 20}, {5, 0, 20}, {0, 5, 20}}};
 
@@ -17,16 +18,29 @@ class OcclusionTest : public ::testing::Test {
  protected:
   RayScene plate_ = RayScene::create(testing::plane_grid(10, 1, 10)).value();
   Occlusion occlusion_{8};
+
+  /// Asks for one triangle, as a cluster of its own.
+  bool hidden(const Ids& ids, const Corners& at) { return hidden(plate_, ids, at); }
+  bool hidden(const RayScene& surface, const Ids& ids, const Corners& at) {
+    const std::array<float, 3> x{at[0].x(), at[1].x(), at[2].x()}, y{at[0].y(), at[1].y(), at[2].y()},
+        z{at[0].z(), at[1].z(), at[2].z()};
+    const std::array<std::array<std::uint8_t, 3>, 1> corners{{{0, 1, 2}}};
+    const std::array<std::uint32_t, 1> triangle{7};
+    return occlusion_.hidden(
+               surface,
+               {.x = x, .y = y, .z = z, .vertex_ids = ids, .corners = corners, .triangle_ids = triangle},
+               1) != 0;
+  }
 };
 
 TEST_F(OcclusionTest, HidesATriangleWhollyBehind) {
   occlusion_.begin({0, 0, 0});
-  EXPECT_TRUE(occlusion_.hidden(plate_, {0, 1, 2}, kBehind));
+  EXPECT_TRUE(hidden({0, 1, 2}, kBehind));
 }
 
 TEST_F(OcclusionTest, KeepsATriangleWithACornerInSight) {
   occlusion_.begin({0, 0, 0});
-  EXPECT_FALSE(occlusion_.hidden(plate_, {0, 1, 2}, Corners{{{0, 1, 20}, {5, 0, 20}, {0, 25, 20}}}));
+  EXPECT_FALSE(hidden({0, 1, 2}, Corners{{{0, 1, 20}, {5, 0, 20}, {0, 25, 20}}}));
 }
 
 TEST_F(OcclusionTest, KeepsATriangleWithOnlyItsCentroidInSight) {
@@ -39,28 +53,28 @@ TEST_F(OcclusionTest, KeepsATriangleWithOnlyItsCentroidInSight) {
   }
   const RayScene surface = RayScene::create(spots).value();
   occlusion_.begin({0, 0, 0});
-  EXPECT_FALSE(occlusion_.hidden(surface, {0, 1, 2}, Corners{{{-12, -12, 20}, {12, -12, 20}, {0, 24, 20}}}));
+  EXPECT_FALSE(hidden(surface, {0, 1, 2}, Corners{{{-12, -12, 20}, {12, -12, 20}, {0, 24, 20}}}));
   EXPECT_EQ(occlusion_.rays(), 4U);
 }
 
 TEST_F(OcclusionTest, KeepsWhatLiesOnThePlateItself) {
   occlusion_.begin({0, 0, 0});
-  EXPECT_FALSE(occlusion_.hidden(plate_, {0, 1, 2}, Corners{{{-10, -10, 10}, {-10, 10, 10}, {10, -10, 10}}}));
+  EXPECT_FALSE(hidden({0, 1, 2}, Corners{{{-10, -10, 10}, {-10, 10, 10}, {10, -10, 10}}}));
 }
 
 TEST_F(OcclusionTest, TracesEachVertexOnceAView) {
   occlusion_.begin({0, 0, 0});
-  occlusion_.hidden(plate_, {0, 1, 2}, kBehind);
+  hidden({0, 1, 2}, kBehind);
   EXPECT_EQ(occlusion_.rays(), 4U);
-  occlusion_.hidden(plate_, {2, 1, 0}, kBehind);
+  hidden({2, 1, 0}, kBehind);
   EXPECT_EQ(occlusion_.rays(), 5U);  // the centroid's alone
 }
 
 TEST_F(OcclusionTest, ForgetsTheViewBefore) {
   occlusion_.begin({0, 0, 0});
-  ASSERT_TRUE(occlusion_.hidden(plate_, {0, 1, 2}, kBehind));
+  ASSERT_TRUE(hidden({0, 1, 2}, kBehind));
   occlusion_.begin({0, 0, 15});
-  EXPECT_FALSE(occlusion_.hidden(plate_, {0, 1, 2}, kBehind));
+  EXPECT_FALSE(hidden({0, 1, 2}, kBehind));
 }
 
 }  // namespace

@@ -53,19 +53,27 @@ TEST(BenchPoses, NameTheLineThatIsWrong) {
   EXPECT_NE(poses.error().message.find(".csv:2: wants ten numbers"), std::string::npos);
 }
 
-TEST(MapperBench, CountsTrianglesStepsAndHeapCalls) {
+TEST(MapperBench, CountsTrianglesStepsAndHeapCallsInEveryForm) {
   const Surface surface{.mesh = testing::icosphere(20, 4)};
-  const MapperLimits limits{.max_triangles_per_step = 2000};
-  Mapper mapper = Mapper::create(surface, SeenFrom::outside, bench_scope({}), limits).value();
-  CutoutPatch patch(patch_capacity(limits));
   const auto poses = PosesFile("0,0,-39,0,0,1,0,1,0,19\n0,0,500,0,0,1,0,1,0,0\n").read().value();
-  const MapperBenchReport report = run_mapper_bench(mapper, patch, poses, 3, TextureMode::perspective);
-  EXPECT_EQ(report.triangles_max, 5120U);  // the whole sphere: its edge lies 31 degrees off the axis
-  EXPECT_EQ(report.steps_max, 3U);
-  EXPECT_EQ(report.heap_calls.value_or(0), 0U);
-  EXPECT_GE(report.max_us, report.p99_us);
-  EXPECT_GE(report.p99_us, report.median_us);
-  EXPECT_NE(to_json(report).find("\"triangles_max\": 5120"), std::string::npos);
+  for (const BenchForm form : {BenchForm::cutout, BenchForm::clip, BenchForm::ranges, BenchForm::live}) {
+    const MapperBenchReport report =
+        run_mapper_bench(surface, bench_scope({}), poses,
+                         {.form = form, .limits = {.max_triangles_per_step = 2000}, .rounds = 3})
+            .value();
+    EXPECT_EQ(report.triangles_max, 5120U);  // the whole sphere: its edge lies 31 degrees off the axis
+    EXPECT_EQ(report.steps_max, form == BenchForm::ranges ? 1U : 3U);
+    EXPECT_EQ(report.heap_calls.value_or(0), 0U);
+    EXPECT_GE(report.max_us, report.p99_us);
+    EXPECT_GE(report.p99_us, report.median_us);
+    EXPECT_EQ(report.occlusion_median_us.has_value(), form == BenchForm::live);
+    EXPECT_LE(report.tree_bytes_per_triangle, 30);
+    EXPECT_NE(to_json(report).find("\"triangles_max\": 5120"), std::string::npos);
+  }
+}
+
+TEST(MapperBench, RefusesNoPoses) {
+  EXPECT_FALSE(run_mapper_bench({.mesh = testing::icosphere(20, 1)}, bench_scope({}), {}, {}));
 }
 
 }  // namespace
