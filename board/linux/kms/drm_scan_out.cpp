@@ -276,6 +276,13 @@ Result<void, PortFault> DrmScanOut::set_mode(int index) noexcept {
   return {};
 }
 
+std::optional<Instant> DrmScanOut::newest_vblank() noexcept {
+  std::uint64_t count = 0, at_ns = 0;
+  if (drmCrtcGetSequence(card_.descriptor.get(), card_.pipe.crtc, &count, &at_ns) != 0 || at_ns == 0)
+    return std::nullopt;
+  return instant_from_nanos(static_cast<std::int64_t>(at_ns));
+}
+
 // With room for one mode the kernel tells what it knows; without any it would probe the panel, which takes
 // long.
 bool DrmScanOut::connected() noexcept {

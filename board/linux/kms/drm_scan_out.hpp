@@ -39,6 +39,7 @@ class DrmScanOut final : public ScanOut {
   Result<void, PortFault> flip(int index, std::uint64_t serial) noexcept override;
   std::optional<FlipEvent> next_flip() noexcept override;
   Result<void, PortFault> set_mode(int index) noexcept override;
+  std::optional<Instant> newest_vblank() noexcept override;
   bool connected() noexcept override;
 
  private:

@@ -17,7 +17,7 @@ Result<std::unique_ptr<KmsPanel>, PortFault> KmsPanel::start(std::unique_ptr<Sca
   }
   panel->scan_out_->finish_drawing(0);
   if (auto set = panel->scan_out_->set_mode(0); !set) return tl::unexpected(set.error());
-  panel->last_vblank_ = clock.now();
+  panel->last_vblank_ = panel->scan_out_->newest_vblank().value_or(clock.now());
   panel->look_at_ = clock.now() + kLook;
   return panel;
 }
@@ -32,7 +32,7 @@ bool KmsPanel::show_again(int buffer, Instant now) noexcept {
   try_at_ = now + kLook;
   if (!scan_out_->set_mode(buffer)) return false;
   ++modes_set_anew_;
-  last_vblank_ = clock_.now();
+  last_vblank_ = scan_out_->newest_vblank().value_or(clock_.now());
   return true;
 }
 
@@ -48,12 +48,32 @@ void KmsPanel::look_at_connector(Instant now) noexcept {
   }
 }
 
+void KmsPanel::came_onto_panel(Instant at) noexcept {
+  if (flip_count_ == flips_.size()) {
+    first_flip_ = (first_flip_ + 1) % flips_.size();
+    --flip_count_;
+  }
+  flips_[(first_flip_ + flip_count_++) % flips_.size()] = {.serial = waiting_serial_, .at = at};
+  shown_ = waiting_;
+  waiting_ = kNone;
+  last_vblank_ = at;
+}
+
+void KmsPanel::collect_flips() noexcept {
+  for (int i = 0; i < 4; ++i) {
+    const auto event = scan_out_->next_flip();
+    if (!event) return;
+    if (waiting_ != kNone && event->serial == waiting_serial_)
+      came_onto_panel(event->at);  // else of an old mode
+  }
+}
+
+// A flip may have come while its picture's successor was drawn slowly: it is looked for before it is missed.
 void KmsPanel::free_a_hung_pipe(Instant now) noexcept {
+  collect_flips();
   if (waiting_ == kNone || now < handed_over_at_ + kFlipPatience || now < try_at_) return;
   if (show_again(waiting_, now)) {
-    forced_flip_ = Flip{.serial = waiting_serial_, .at = last_vblank_};
-    shown_ = waiting_;
-    waiting_ = kNone;
+    came_onto_panel(last_vblank_);
   } else if (now >= handed_over_at_ + kHangPatience) {
     given_up_ = true;
   }
@@ -92,21 +112,11 @@ Result<std::uint64_t, PortFault> KmsPanel::present(Instant now) noexcept {
 
 std::optional<Flip> KmsPanel::take_flip(Instant now) noexcept {
   if (!unplugged_ && !given_up_) free_a_hung_pipe(now);
-  if (forced_flip_) {
-    const Flip flip = *forced_flip_;
-    forced_flip_.reset();
-    return flip;
-  }
-  for (int i = 0; i < 4; ++i) {
-    const auto event = scan_out_->next_flip();
-    if (!event) return std::nullopt;
-    if (waiting_ == kNone || event->serial != waiting_serial_) continue;  // of before a new mode
-    shown_ = waiting_;
-    waiting_ = kNone;
-    last_vblank_ = event->at;
-    return Flip{.serial = event->serial, .at = event->at};
-  }
-  return std::nullopt;
+  if (flip_count_ == 0) return std::nullopt;
+  const Flip flip = flips_[first_flip_];
+  first_flip_ = (first_flip_ + 1) % flips_.size();
+  --flip_count_;
+  return flip;
 }
 
 Instant KmsPanel::next_vblank(Instant now) const noexcept {

@@ -2,6 +2,8 @@
 // that is pulled.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 
@@ -38,6 +40,8 @@ class KmsPanel final : public Panel {
   KmsPanel(std::unique_ptr<ScanOut> scan_out, Clock& clock) : scan_out_(std::move(scan_out)), clock_(clock) {}
   std::optional<PortFault> trouble(Instant now) noexcept;
   void look_at_connector(Instant now) noexcept;
+  void collect_flips() noexcept;
+  void came_onto_panel(Instant at) noexcept;
   void free_a_hung_pipe(Instant now) noexcept;
   bool show_again(int buffer, Instant now) noexcept;
   int free_buffer() const noexcept;
@@ -47,7 +51,8 @@ class KmsPanel final : public Panel {
   int drawing_ = kNone, waiting_ = kNone, shown_ = 0;
   std::uint64_t serial_ = 0, waiting_serial_ = 0;
   Instant handed_over_at_{}, last_vblank_{}, look_at_{}, try_at_{};
-  std::optional<Flip> forced_flip_;  ///< of a picture that a new mode brought onto the panel
+  std::array<Flip, 4> flips_{};  ///< come and not yet taken; the oldest is forgotten for a fifth
+  std::size_t first_flip_ = 0, flip_count_ = 0;
   bool unplugged_ = false, given_up_ = false;
   std::uint32_t modes_set_anew_ = 0;
 };

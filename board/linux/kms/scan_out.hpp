@@ -26,6 +26,9 @@ class ScanOut {
   virtual std::optional<FlipEvent> next_flip() noexcept = 0;
   /// Sets the mode anew with this buffer; waits for it. Flips under way are void.
   virtual Result<void, PortFault> set_mode(int index) noexcept = 0;
+  /// The newest vblank, so that the pipe's phase is known before the first flip; nothing where it is not
+  /// told.
+  virtual std::optional<Instant> newest_vblank() noexcept { return std::nullopt; }
   /// Whether a panel is on the connector; cheap, no probing.
   virtual bool connected() noexcept = 0;
 };

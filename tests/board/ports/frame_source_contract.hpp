@@ -21,7 +21,9 @@ class FrameSourceRig {
   virtual std::string missing() const { return {}; }
   virtual Clock& clock() = 0;
   virtual FrameSource& source() = 0;
-  virtual Nanos tolerance() const { return 0ns; }  ///< of wake-ups and of the distance between stamps
+  virtual Nanos tolerance() const { return 0ns; }  ///< of wake-ups, stamps and the distance between stamps
+  /// Whether the machine may be too slow for every frame; gaps must then show in the stamps as well.
+  virtual bool may_lose_frames() const { return false; }
 };
 
 template <class Rig>
@@ -72,10 +74,12 @@ TYPED_TEST_P(FrameSourceContract, CountsFramesWithoutAGapAndStampsThemAPeriodApa
   for (int i = 0; i < 10; ++i) {
     const auto frame = this->next();
     ASSERT_TRUE(frame);
-    EXPECT_EQ(frame->sequence, last->sequence + 1);
-    EXPECT_NEAR(milliseconds(frame->stamp - last->stamp), milliseconds(this->period()),
+    const auto steps = frame->sequence - last->sequence;
+    EXPECT_GE(steps, 1U);
+    EXPECT_TRUE(steps == 1U || this->rig.may_lose_frames()) << steps;
+    EXPECT_NEAR(milliseconds(frame->stamp - last->stamp), steps * milliseconds(this->period()),
                 milliseconds(this->rig.tolerance()) + 0.001);
-    EXPECT_LE(frame->stamp, this->rig.clock().now());
+    EXPECT_LE(frame->stamp, this->rig.clock().now() + this->rig.tolerance());
     this->rig.source().give_back(frame->index);
     last = frame;
   }
@@ -86,7 +90,11 @@ TYPED_TEST_P(FrameSourceContract, SaysNothingYetBetweenFrames) {
   const auto frame = this->next();
   ASSERT_TRUE(frame);
   this->rig.source().give_back(frame->index);
-  const auto again = this->rig.source().take();
+  auto again = this->rig.source().take();
+  for (std::uint32_t i = 0; again && i < this->rig.source().buffer_count(); ++i) {  // of a late machine
+    this->rig.source().give_back(again->index);
+    again = this->rig.source().take();
+  }
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error(), PortFault::nothing_yet);
 }

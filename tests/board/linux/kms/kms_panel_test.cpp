@@ -111,6 +111,18 @@ TEST(KmsPanel, SetsTheModeAnewWhenAFlipDoesNotComeAndGoesOn) {
   EXPECT_FALSE(bench.panel->given_up());
 }
 
+TEST(KmsPanel, MissesNoFlipThatCameWhileItsSuccessorWasDrawnSlowly) {
+  Bench bench;
+  const auto serial = bench.show();
+  ASSERT_TRUE(serial && bench.panel->acquire());
+  bench.clock.advance_by(200ms);
+  EXPECT_TRUE(bench.panel->present(bench.clock.now()));
+  EXPECT_EQ(bench.panel->modes_set_anew(), 0u);
+  const auto flip = bench.panel->take_flip(bench.clock.now());
+  ASSERT_TRUE(flip);
+  EXPECT_EQ(flip->serial, *serial);
+}
+
 TEST(KmsPanel, GivesUpAfterASecondOfAHungPipe) {
   Bench bench;
   bench.card->hung = true;
