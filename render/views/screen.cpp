@@ -12,6 +12,7 @@
 #include <GLES2/gl2ext.h>
 
 #include "render/gles/picture_texture.hpp"
+#include "render/gles/shared_target.hpp"
 #include "render/hud/status_panel.hpp"
 #include "render/shaders/shaders.hpp"
 #include "render/views/scope_outline.hpp"
@@ -46,6 +47,7 @@ struct Screen::State {
   std::vector<HudCanvas> canvas;  ///< exactly one
   gles::Texture picture;
   gles::Framebuffer framebuffer;
+  gles::SharedTargets shared;  ///< targets in dma-bufs, drawn into without a copy
   gles::Program inset;
   gles::VertexArray no_attributes;
   gles::PictureTexture::Uniforms picture_uniforms{};
@@ -58,6 +60,7 @@ struct Screen::State {
   void warm_up();
   void redraw(const ScreenState& state, const Painter& painter) noexcept;
   void draw_inset(const gles::PictureTexture& live) noexcept;
+  GLuint shared_target(const ImageDescriptor& target) noexcept;
   bool read_into(const ImageDescriptor& target) noexcept;
 };
 
@@ -163,8 +166,11 @@ void Screen::State::redraw(const ScreenState& state, const Painter& painter) noe
 bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageDescriptor& target) noexcept {
   State& s = *state_;
   s.redraw(state, painter);
-  s.view[0].copy_to(s.framebuffer.id(), static_cast<int>(s.layout.view.x), static_cast<int>(s.layout.view.y));
-  glBindFramebuffer(GL_FRAMEBUFFER, s.framebuffer.id());
+  const bool copies = target.planes[0].data != nullptr;
+  const GLuint into = copies ? s.framebuffer.id() : s.shared_target(target);
+  if (into == 0) return false;
+  s.view[0].copy_to(into, static_cast<int>(s.layout.view.x), static_cast<int>(s.layout.view.y));
+  glBindFramebuffer(GL_FRAMEBUFFER, into);
   HudCanvas& canvas = s.canvas[0];
   draw_grounds(canvas, s.layout);
   if (state.X_MC)
@@ -176,7 +182,14 @@ bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageD
   if (live) s.draw_inset(painter.picture());
   draw_status(canvas, s.layout, state.status, live ? InsetContent::picture : InsetContent::blank);
   canvas.flush();
-  return s.read_into(target);
+  if (copies) return s.read_into(target);
+  glFinish();  // the panel does not wait for a renderer without fences
+  return true;
+}
+
+GLuint Screen::State::shared_target(const ImageDescriptor& target) noexcept {
+  const bool fits = target.width_px == settings.width_px && target.height_px == settings.height_px;
+  return fits ? shared.framebuffer_of(target) : 0;
 }
 
 bool Screen::State::read_into(const ImageDescriptor& target) noexcept {

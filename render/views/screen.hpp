@@ -42,7 +42,8 @@ class Screen {
   Screen& operator=(Screen&&) noexcept;
   ~Screen();
 
-  /// Draws into `target`: CPU memory, xrgb8888 or rgba8888, of the settings' size. False where it is neither.
+  /// Draws into `target`, of the settings' size: CPU memory, xrgb8888 or rgba8888, by reading back; or an
+  /// xrgb8888 dma-buf that EGL can import, without a copy and waited for. False where it is none of these.
   bool draw(const ScreenState& state, const Painter& painter, const ImageDescriptor& target) noexcept;
 
  private:
