@@ -115,11 +115,12 @@ void Cart::State::build_stages() {
                        .device_latency = from_seconds(config.tracker.latency_ms * 1e-3)},
       lanes);
   tracker_wake = std::make_unique<TrackerWake>(setup.ports.tracker, *driver);
-  camera =
-      std::make_unique<CameraStage>(setup.ports.camera, setup.clock,
-                                    StampSettings{.meaning = config.camera.stamp,
-                                                  .exposure = from_seconds(config.camera.exposure_ms * 1e-3)},
-                                    lanes);
+  camera = std::make_unique<CameraStage>(
+      setup.ports.camera, setup.clock,
+      StampSettings{.meaning = config.camera.stamp,
+                    .exposure = from_seconds(config.camera.exposure_ms * 1e-3),
+                    .after_exposure = from_seconds(config.camera.after_exposure_ms * 1e-3)},
+      lanes);
   sync = std::make_unique<SyncStage>(
       SyncStageSettings{.history = {.period = tracker_period},
                         .matcher = {.tracker_against_video = config.tracker_against_video},
@@ -229,7 +230,7 @@ std::vector<ThreadPlan> Cart::State::plans() {
 }
 
 Result<std::unique_ptr<Cart>> Cart::create(const Setup& setup) {
-  auto context = GlContext::create();
+  auto context = GlContext::create(setup.display);
   if (!context) return tl::unexpected(context.error());
   auto state = std::make_unique<State>(setup, std::move(*context));
   if (auto built = state->build_painting(); !built) return tl::unexpected(built.error());
@@ -335,9 +336,14 @@ CartFigures Cart::figures() const {
 }
 
 Cart::Now Cart::now() const {
-  return {.coverage = state_->showing ? state_->showing->coverage() : 0,
-          .frames = state_->frames.size(),
-          .captures = state_->captures.size()};
+  const State& s = *state_;
+  Now now{.frames = s.frames.size(), .captures = s.captures.size()};
+  if (!s.showing) return now;
+  now.coverage = s.showing->coverage();
+  now.camera = s.camera->fault();
+  now.pedal = s.pedal->fault();
+  now.panel = s.showing->fault();
+  return now;
 }
 
 }  // namespace orcart

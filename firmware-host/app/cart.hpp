@@ -47,6 +47,7 @@ class Cart {
     const Patient& patient;
     Ports ports;
     Clock& clock;
+    NativeDisplay display{};          ///< where EGL is opened: the panel's card, or nowhere
     SessionStage* session = nullptr;  ///< null: nothing is kept on disk
     double longest_run_s = 3600;      ///< what the ledgers of frames and captures have room for
   };
@@ -80,6 +81,8 @@ class Cart {
   struct Now {
     double coverage = 0;
     std::size_t frames = 0, captures = 0;  ///< shown; painted or refused
+    /// What is wrong with each device; nothing_yet where nothing is.
+    PortFault camera = PortFault::nothing_yet, pedal = PortFault::nothing_yet, panel = PortFault::nothing_yet;
   };
   Now now() const;
 

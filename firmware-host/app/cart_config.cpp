@@ -20,32 +20,6 @@ void read_files(TomlReader& reader, CartConfig& config) {
   config.registration = registration.path("file");
 }
 
-void read_camera(const TomlSection& section, CameraConfig& camera) {
-  camera.kind = section.choice("kind", {"simulated"});
-  camera.width_px = static_cast<int>(section.integer("width_px", {.min = 64, .max = 4096, .fallback = 640}));
-  camera.height_px =
-      static_cast<int>(section.integer("height_px", {.min = 64, .max = 4096, .fallback = 480}));
-  camera.format = section.choice_of<PixelFormat>(
-      "format", {{"yuyv", PixelFormat::yuyv}, {"nv12", PixelFormat::nv12}}, PixelFormat::yuyv);
-  camera.rate_hz = section.number("rate_hz", {.min = 5, .max = 240, .fallback = 30});
-  camera.exposure_ms = section.number("exposure_ms", {.min = 0.1, .max = 100, .fallback = 8});
-  camera.stamp = section.choice_of<StampMeaning>("stamp",
-                                                 {{"start_of_exposure", StampMeaning::start_of_exposure},
-                                                  {"end_of_exposure", StampMeaning::end_of_exposure}},
-                                                 StampMeaning::end_of_exposure);
-  if (camera.exposure_ms > 1000 / camera.rate_hz) {
-    section.refuse("exposure_ms", "is longer than the period of rate_hz; at most " +
-                                      std::to_string(1000 / camera.rate_hz) + " is accepted");
-  }
-}
-
-void read_panel(const TomlSection& section, PanelConfig& panel) {
-  panel.width_px = static_cast<int>(section.integer("width_px", {.min = 640, .max = 3840, .fallback = 1280}));
-  panel.height_px =
-      static_cast<int>(section.integer("height_px", {.min = 480, .max = 2400, .fallback = 800}));
-  panel.refresh_hz = section.number("refresh_hz", {.min = 10, .max = 240, .fallback = 60});
-}
-
 void read_simulation(const TomlSection& section, SimulationConfig& simulation) {
   simulation.seed = static_cast<std::uint64_t>(section.integer("seed", {.min = 0, .fallback = 1}));
   simulation.duration_s = section.number("duration_s", {.min = 2, .max = 3600, .fallback = 30});
@@ -66,6 +40,7 @@ Result<CartConfig> read_cart(const std::filesystem::path& file) {
   read_files(reader, config);
   read_tracker(reader.section("tracker"), config.tracker);
   read_camera(reader.section("camera"), config.camera);
+  read_pedal(reader.section("pedal"), config.pedal);
   read_panel(reader.section("panel"), config.panel);
   read_simulation(reader.section("simulation"), config.simulation);
   const TomlSection sync = reader.section("sync");
@@ -78,6 +53,13 @@ Result<CartConfig> read_cart(const std::filesystem::path& file) {
   const TomlSection view = reader.section("view");
   config.view_from = view.numbers("from", 3, config.view_from);
   config.view_up = view.numbers("up", 3, config.view_up);
+  if (config.tracker.kind != TrackerKind::simulated && config.camera.kind != CameraKind::simulated &&
+      config.pedal.kind == PedalKind::simulated) {
+    reader.section("pedal").refuse(
+        "kind",
+        "is \"simulated\", which presses by the script of a simulated procedure; with "
+        "tracker and camera real, gpio, keyboard or none is accepted");
+  }
   if (auto finished = reader.finish(); !finished) return tl::unexpected(finished.error());
   return config;
 }

@@ -6,29 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "firmware-host/app/device_config.hpp"
 #include "firmware-host/app/tracker_config.hpp"
-#include "firmware-host/camera/stamp_meaning.hpp"
-#include "realtime/base/image.hpp"
 #include "realtime/base/instant.hpp"
 #include "realtime/base/result.hpp"
 #include "realtime/geometry/triangle_mesh.hpp"
 #include "realtime/mapper/cutout_patch.hpp"
 
 namespace orcart {
-
-struct CameraConfig {
-  std::string kind = "simulated";
-  int width_px = 640, height_px = 480;
-  PixelFormat format = PixelFormat::yuyv;
-  double rate_hz = 30;
-  double exposure_ms = 8;
-  StampMeaning stamp = StampMeaning::end_of_exposure;
-};
-
-struct PanelConfig {
-  int width_px = 1280, height_px = 800;
-  double refresh_hz = 30;
-};
 
 struct SimulationConfig {
   std::uint64_t seed = 1;
@@ -48,6 +33,7 @@ struct CartConfig {
   TextureMode mode = TextureMode::perspective;
   TrackerConfig tracker;
   CameraConfig camera;
+  PedalConfig pedal;
   PanelConfig panel;
   Nanos tracker_against_video{};  ///< [sync]: added to a frame's mid-exposure before poses are looked up
   std::vector<double> view_from = {0, -1, 0};  ///< from the surface's centre to the eye, M
@@ -55,7 +41,15 @@ struct CartConfig {
   SimulationConfig simulation;
 
   /// Whether any input is none of the operating room's: every view then wears a mark.
-  bool simulated() const { return !is_device(tracker.kind) || camera.kind == "simulated"; }
+  bool simulated() const {
+    return !is_device(tracker.kind) || camera.kind == CameraKind::simulated ||
+           pedal.kind == PedalKind::simulated;
+  }
+  /// Whether a device's own time passes in this cart: it needs the wall clock.
+  bool any_device() const {
+    return is_device(tracker.kind) || camera.kind != CameraKind::simulated ||
+           pedal.kind == PedalKind::gpio || pedal.kind == PedalKind::keyboard;
+  }
 };
 
 /// Every error at once, each with its line; unknown keys are refused.

@@ -31,9 +31,13 @@ tl::expected<Options, int> read_options(int argc, char** argv) {
   app.set_version_flag("--version", ORCART_VERSION);
   app.add_option("--cart", options.cart, "the cart's configuration")->required();
   app.add_option("--panel", options.panel,
-                 "png: pictures beside the report; window: a preview on this screen; none")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, PanelKind>{
-          {"png", PanelKind::png}, {"window", PanelKind::window}, {"none", PanelKind::none}}));
+                 "png: pictures beside the report; window: a preview on this screen; kms: the [panel] of the "
+                 "cart, no desktop "
+                 "running; none")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, PanelKind>{{"png", PanelKind::png},
+                                                                           {"window", PanelKind::window},
+                                                                           {"kms", PanelKind::kms},
+                                                                           {"none", PanelKind::none}}));
   app.add_option("--clock", options.clock,
                  "real: the wall clock; simulated: as fast as it can, the same every time")
       ->transform(CLI::CheckedTransformer(

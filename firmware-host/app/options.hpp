@@ -10,7 +10,7 @@
 
 namespace orcart {
 
-enum class PanelKind { png, window, none };
+enum class PanelKind { png, window, kms, none };
 enum class ClockKind { real, simulated };
 
 struct Options {

@@ -8,12 +8,12 @@
 #include <optional>
 
 #include "firmware-host/app/cart.hpp"
+#include "firmware-host/app/device_log.hpp"
+#include "firmware-host/app/devices.hpp"
 #include "firmware-host/app/heartbeat.hpp"
 #include "firmware-host/app/kept_session.hpp"
-#include "firmware-host/app/open_tracker.hpp"
 #include "firmware-host/app/preview.hpp"
 #include "firmware-host/app/run_figures.hpp"
-#include "firmware-host/app/simulated_devices.hpp"
 #include "firmware-host/app/truth_check.hpp"
 #include "firmware-host/report/contact_sheet.hpp"
 #include "render/views/screen.hpp"
@@ -80,8 +80,8 @@ std::vector<WatchedThread> watched_threads(const Cart& cart) {
   return watched;
 }
 
-/// Lets the cart go through the procedure; its coverage as it grew.
-Result<std::vector<CoveragePoint>> go(Cart& cart, const SimulatedDevices& devices, Clock& clock,
+/// Lets the cart go through the procedure; its coverage as it grew. Ends early when the panel hangs.
+Result<std::vector<CoveragePoint>> go(Cart& cart, const Devices& devices, Clock& clock,
                                       SimulatedClock* simulated, const Preview* preview, Progress& progress) {
   std::vector<CoveragePoint> coverage;
   std::optional<Heartbeat> heartbeat;
@@ -89,8 +89,10 @@ Result<std::vector<CoveragePoint>> go(Cart& cart, const SimulatedDevices& device
     if (auto started = cart.start(); !started) return tl::unexpected(started.error());
     heartbeat.emplace(ServiceManager::from_environment(), watched_threads(cart), clock);
   }
-  const Instant end = devices.end() + 500ms;
+  const bool ends = devices.end() != Instant::max();
+  const Instant end = ends ? devices.end() + 500ms : Instant::max();
   const auto quit = [&] { return stop_asked != 0 || (preview != nullptr && preview->quit_asked()); };
+  DeviceLog log;
   while (clock.now() < end && !quit()) {
     const Instant next = std::min(end, clock.now() + 250ms);
     if (simulated != nullptr) {
@@ -99,8 +101,14 @@ Result<std::vector<CoveragePoint>> go(Cart& cart, const SimulatedDevices& device
       clock.sleep_until(next);
     }
     const double at_s = seconds(clock.now() - devices.start());
-    if (at_s >= 0) coverage.push_back({.at_s = at_s, .covered = cart.now().coverage});
-    progress.show("procedure", std::max(0.0, at_s / seconds(end - devices.start())));
+    const Cart::Now now = cart.now();
+    if (at_s >= 0) coverage.push_back({.at_s = at_s, .covered = now.coverage});
+    if (const std::string news = log.news(now); !news.empty()) {
+      progress.end();
+      std::fputs(news.c_str(), stderr);
+    }
+    if (now.panel == PortFault::io) return fail("the panel hangs: no picture came onto it for a second");
+    if (ends) progress.show("procedure", std::max(0.0, at_s / seconds(end - devices.start())));
   }
   progress.end();
   return coverage;
@@ -206,10 +214,10 @@ Result<std::vector<NamedPicture>> surface_pictures(Cart& cart, const Patient& pa
 }
 
 Result<void> write_pictures(RunReport& report, const Options& options, Cart& cart, const Patient& patient,
-                            const CartConfig& config, const SimulatedDevices& devices) {
+                            const CartConfig& config, const Devices& devices) {
   std::vector<NamedPicture> all;
   std::vector<Picture> sheet;
-  for (const Picture& panel : devices.pictures().kept())
+  for (const Picture& panel : devices.panel_pictures())
     all.push_back({"panel-" + std::to_string(all.size() + 1) + ".png", panel});
   const std::size_t last_panel = all.empty() ? 0 : all.size() - 1;
   auto surfaces = surface_pictures(cart, patient, config);
@@ -228,6 +236,12 @@ Result<void> write_pictures(RunReport& report, const Options& options, Cart& car
       return written;
   }
   return {};
+}
+
+/// What the ledgers must have room for: the procedure, or a long day's where only a person ends it.
+double longest_run_s(const Devices& devices) {
+  constexpr double kLongDay_s = 6 * 3600;
+  return devices.end() == Instant::max() ? kLongDay_s : seconds(devices.end() - devices.start()) + 10;
 }
 
 }  // namespace
@@ -267,29 +281,27 @@ ExitCode run(const Options& options) {
     if (!opened) return complain(opened.error(), ExitCode::device);
     preview = std::move(*opened);
   }
-  auto devices = SimulatedDevices::create(
+  if (simulate && (config->any_device() || options.panel == PanelKind::kms))
+    return complain({"--clock simulated goes with simulated devices; real ones need --clock real"},
+                    ExitCode::usage);
+  auto devices = Devices::open(
       {.config = *config,
        .patient = *patient,
        .clock = clock,
-       .preview = preview ? &preview->observer() : nullptr,
-       .pedal = preview ? &preview->pedal() : nullptr,
+       .panel = options.panel,
+       .preview = preview.get(),
+       .run_for = options.run_for,
        .drawing = [&](double done) { progress.show("drawing what the camera will see", done); }});
   progress.end();
   if (!devices) return complain(devices.error(), ExitCode::device);
-  if (simulate && is_device(config->tracker.kind))
-    return complain({"a tracker on a real line needs --clock real: it keeps its own time"}, ExitCode::usage);
-  auto tracker = open_tracker(config->tracker, clock);
-  if (!tracker) return complain(tracker.error(), ExitCode::device);
-  const Ports simulated_ports = (*devices)->ports();
+  for (const std::string& note : (*devices)->notes()) std::fprintf(stderr, "%s\n", note.c_str());
   auto cart = Cart::create({.config = *config,
                             .patient = *patient,
-                            .ports = {.tracker = *tracker ? **tracker : simulated_ports.tracker,
-                                      .camera = simulated_ports.camera,
-                                      .pedal = simulated_ports.pedal,
-                                      .panel = simulated_ports.panel},
+                            .ports = (*devices)->ports(),
                             .clock = clock,
+                            .display = (*devices)->display(),
                             .session = session ? &session->stage() : nullptr,
-                            .longest_run_s = config->simulation.duration_s + 10});
+                            .longest_run_s = longest_run_s(**devices)});
   if (!cart) return complain(cart.error(), ExitCode::device);
   auto coverage = go(**cart, **devices, clock, simulate ? &simulated : nullptr, preview.get(), progress);
   if (!coverage) return complain(coverage.error(), ExitCode::device);
@@ -310,9 +322,12 @@ ExitCode run(const Options& options) {
     if (auto written = write_pictures(report, options, **cart, *patient, *config, **devices); !written)
       return complain(written.error(), ExitCode::failed);
     constexpr std::size_t kViewsJudged = 8;
-    const auto views = views_of(**cart, (*devices)->world(), kViewsJudged);
+    const SimulatedWorld* world = (*devices)->truth();
+    const auto views = world != nullptr ? views_of(**cart, *world, kViewsJudged) : std::vector<JudgedView>{};
     cart->reset();
-    if (auto judged = judge_painting(report, *patient, *config, views, progress); !judged)
+    if (auto judged =
+            world != nullptr ? judge_painting(report, *patient, *config, views, progress) : Result<void>{};
+        !judged)
       return complain(judged.error(), ExitCode::failed);
     if (auto written = write_report(options.report_dir, report); !written)
       return complain(written.error(), ExitCode::failed);

@@ -42,36 +42,71 @@ std::vector<PedalEdge> edges_of(const SimulatedWorld& world, const std::vector<N
   return edges;
 }
 
+/// What the camera will see, unless it lies there already.
+Result<MovieFile> draw_movie(const SimulatedDevices::Request& request, const RayScene& rays,
+                             const SimulatedWorld& world) {
+  const CartConfig& config = request.config;
+  const SimulationConfig& simulation = config.simulation;
+  const Effect effects = simulation.picture_noise ? Effect::on : Effect::off;
+  SceneLook look{.specular = effects, .noise = effects, .blur = effects};
+  if (config.seen_from == SeenFrom::outside) look.tissue = LivingTissue{.kind = TissueKind::cortex};
+  const MovieRequest wanted{.surface = request.patient.surface,
+                            .rays = rays,
+                            .scope = request.patient.scope,
+                            .world = world,
+                            .look = look,
+                            .format = config.camera.format,
+                            .timing = {.rate_hz = config.camera.rate_hz,
+                                       .exposure = from_seconds(config.camera.exposure_ms * 1e-3)}};
+  std::error_code error;
+  std::filesystem::create_directories(simulation.movie, error);
+  char name[64];
+  std::snprintf(name, sizeof name, "%016llx.orcmovie",
+                static_cast<unsigned long long>(header_for(wanted).content));
+  return movie_for(simulation.movie / name, wanted, [&](std::uint64_t drawn, std::uint64_t all) {
+    if (request.drawing) request.drawing(static_cast<double>(drawn) / static_cast<double>(all));
+  });
+}
+
 }  // namespace
 
 struct SimulatedDevices::State {
   SimulatedWorld world;
-  MovieFile movie;
+  std::optional<MovieFile> movie;  ///< nothing where the camera is real
   NdiEmulator emulator;
   SimulatedByteLink link;
-  SimulatedFrameSource camera;
+  std::optional<SimulatedFrameSource> camera;
   SimulatedGpio pedal;
   PanelPictures pictures;
   std::vector<PanelObserver*> observers;
   SimulatedPanel panel;
+  ByteLink* real_tracker;
+  FrameSource* real_camera;
+  GpioLines* real_pedal;
 
-  State(SimulatedWorld made_world, MovieFile made_movie, const Request& request)
+  State(SimulatedWorld made_world, std::optional<MovieFile> made_movie, const Request& request)
       : world(std::move(made_world)),
         movie(std::move(made_movie)),
         emulator(emulator_settings(request.config, request.clock.now()), world),
         link(emulator, request.clock),
-        camera(request.clock, movie,
-               {.start = world.start(),
-                .stamp_at = request.config.camera.stamp == StampMeaning::start_of_exposure
-                                ? StampAt::exposure_start
-                                : StampAt::exposure_end,
-                .buffers = kFrameBuffers,
-                .faults = request.camera_faults}),
         pedal(request.clock, {.edges = edges_of(world, request.more_presses), .bounce = {.pairs = 2}}),
         pictures(mode_of(request.config), picture_instants(world.start(), world.end(), request.pictures)),
         observers(observers_of(pictures, request.preview)),
         panel(request.clock, {.mode = mode_of(request.config), .first_vblank = request.clock.now() + 7ms},
-              observers) {}
+              observers),
+        real_tracker(request.tracker),
+        real_camera(request.camera),
+        real_pedal(request.real_pedal) {
+    if (!movie) return;
+    camera.emplace(
+        request.clock, *movie,
+        SimulatedCameraSetup{.start = world.start(),
+                             .stamp_at = request.config.camera.stamp == StampMeaning::start_of_exposure
+                                             ? StampAt::exposure_start
+                                             : StampAt::exposure_end,
+                             .buffers = kFrameBuffers,
+                             .faults = request.camera_faults});
+  }
 
   static std::vector<PanelObserver*> observers_of(PanelPictures& kept, PanelObserver* preview) {
     if (preview == nullptr) return {&kept};
@@ -99,37 +134,27 @@ Result<std::unique_ptr<SimulatedDevices>> SimulatedDevices::create(const Request
       {.surface = request.patient.surface, .rays = *rays, .scope = request.patient.scope, .script = script});
   if (!world) return tl::unexpected(world.error());
 
-  const Effect effects = simulation.picture_noise ? Effect::on : Effect::off;
-  SceneLook look{.specular = effects, .noise = effects, .blur = effects};
-  if (config.seen_from == SeenFrom::outside) look.tissue = LivingTissue{.kind = TissueKind::cortex};
-  const MovieRequest wanted{.surface = request.patient.surface,
-                            .rays = *rays,
-                            .scope = request.patient.scope,
-                            .world = *world,
-                            .look = look,
-                            .format = config.camera.format,
-                            .timing = {.rate_hz = config.camera.rate_hz,
-                                       .exposure = from_seconds(config.camera.exposure_ms * 1e-3)}};
-  std::error_code error;
-  std::filesystem::create_directories(simulation.movie, error);
-  char name[64];
-  std::snprintf(name, sizeof name, "%016llx.orcmovie",
-                static_cast<unsigned long long>(header_for(wanted).content));
-  auto movie = movie_for(simulation.movie / name, wanted, [&](std::uint64_t drawn, std::uint64_t all) {
-    if (request.drawing) request.drawing(static_cast<double>(drawn) / static_cast<double>(all));
-  });
-  if (!movie) return tl::unexpected(movie.error());
+  std::optional<MovieFile> movie;
+  if (request.camera == nullptr) {
+    auto drawn = draw_movie(request, *rays, *world);
+    if (!drawn) return tl::unexpected(drawn.error());
+    movie.emplace(std::move(*drawn));
+  }
   world->put_reference(request.patient.registration.X_MR);
   world->begin_at(request.clock.now() + kTrackerStart);
   return std::unique_ptr<SimulatedDevices>(
-      new SimulatedDevices(std::make_unique<State>(std::move(*world), std::move(*movie), request)));
+      new SimulatedDevices(std::make_unique<State>(std::move(*world), std::move(movie), request)));
 }
 
 SimulatedDevices::SimulatedDevices(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SimulatedDevices::~SimulatedDevices() = default;
 
 Ports SimulatedDevices::ports() {
-  return {.tracker = state_->link, .camera = state_->camera, .pedal = state_->pedal, .panel = state_->panel};
+  State& s = *state_;
+  return {.tracker = s.real_tracker != nullptr ? *s.real_tracker : s.link,
+          .camera = s.real_camera != nullptr ? *s.real_camera : *s.camera,
+          .pedal = s.real_pedal != nullptr ? *s.real_pedal : s.pedal,
+          .panel = s.panel};
 }
 Instant SimulatedDevices::start() const {
   return state_->world.start();

@@ -27,6 +27,10 @@ class SimulatedDevices {
     std::function<void(double done)> drawing;  ///< progress of drawing what the camera will see
     ProcedureScript script{};                  ///< its seed, duration, side and entry are the configuration's
     std::vector<CameraFaultPeriod> camera_faults{};
+    /// Real devices that stand in the place of simulated ones; nothing is drawn for a real camera.
+    ByteLink* tracker = nullptr;
+    FrameSource* camera = nullptr;
+    GpioLines* real_pedal = nullptr;
     std::vector<Nanos> more_presses{};  ///< besides the script's, short ones, since the procedure's start
   };
   /// Plans the procedure, and draws its pictures into a movie file unless they lie there already.

@@ -21,6 +21,7 @@ StepReport CameraStage::step(Instant) noexcept {
       continue;
     }
     news_.connected = true;
+    fault_.clear();
     retry_at_ = Instant{};
     retry_after_ = kFirstRetry;
     const CapturedFrame frame = intake_.accept(*buffer, clock_.now());
@@ -38,6 +39,7 @@ StepReport CameraStage::step(Instant) noexcept {
 void CameraStage::recover(PortFault fault) noexcept {
   if (fault == PortFault::nothing_yet) return;
   news_.connected = false;
+  fault_.set(fault);
   if (clock_.now() < retry_at_) return;
   (void)source_.recover();
   retry_at_ = clock_.now() + retry_after_;

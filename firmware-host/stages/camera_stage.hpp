@@ -5,6 +5,7 @@
 #include "board/ports/frame_source.hpp"
 #include "firmware-host/camera/frame_intake.hpp"
 #include "firmware-host/stages/lanes.hpp"
+#include "firmware-host/stages/watched_fault.hpp"
 #include "realtime/kernel/clock.hpp"
 #include "realtime/kernel/stage.hpp"
 
@@ -21,6 +22,9 @@ class CameraStage final : public Stage {
   const CameraNews& news() const noexcept { return news_; }  ///< the stage's own thread, or after it ended
   const CameraHealth& health() const noexcept { return intake_.health(); }  ///< likewise
 
+  /// What take() last failed with; nothing_yet since a frame came. Any thread.
+  PortFault fault() const noexcept { return fault_.get(); }
+
   /// After a fault the stream is started again at once, then after 0.1 s, each time twice as late, up to 1 s.
   static constexpr Nanos kFirstRetry = 100ms, kLastRetry = 1s;
 
@@ -32,6 +36,7 @@ class CameraStage final : public Stage {
   FrameIntake intake_;
   Lanes& lanes_;
   CameraNews news_;
+  WatchedFault fault_;
   Instant retry_at_{};
   Nanos retry_after_ = kFirstRetry;
 };

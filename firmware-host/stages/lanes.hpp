@@ -36,6 +36,11 @@ struct CameraNews {
   bool connected = true;
 };
 
+/// The pedal as its stage sees it, for the panel.
+struct PedalNews {
+  bool connected = true;
+};
+
 /// Where the scope is now, for the outline.
 struct ScopeNow {
   Instant at{};
@@ -74,6 +79,7 @@ struct Lanes {
   SpscQueue<std::uint32_t> patches_home;    ///< render -> mapping: the patch slots' way home
   LatestMailbox<TrackerNews> tracker_news;  ///< tracker -> render
   LatestMailbox<CameraNews> camera_news;    ///< camera -> render
+  LatestMailbox<PedalNews> pedal_news;      ///< pedal -> render
   LatestMailbox<ScopeNow> scope_now;        ///< mapping -> render
 };
 

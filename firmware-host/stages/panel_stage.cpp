@@ -59,10 +59,14 @@ PanelStage::PanelStage(const Parts& parts, const PanelStageSettings& settings)
 StepReport PanelStage::step(Instant now) noexcept {
   take_flips(now);
   auto target = parts_.panel.acquire();
-  if (!target) return {};
+  if (!target) {
+    fault_.set(target.error());
+    return {};
+  }
   fill_status(now);
   parts_.screen.draw(screen_state_, parts_.painter, *target);
   const auto serial = parts_.panel.present(parts_.clock.now());
+  fault_.set(serial || serial.error() == PortFault::busy ? PortFault::nothing_yet : serial.error());
   if (!serial) return {};
 
   const PaintState& paint = parts_.painter_stage.state();
@@ -123,6 +127,7 @@ void PanelStage::fill_status(Instant now) noexcept {
   (void)parts_.lanes.tracker_news.take(tracker_);
   (void)parts_.lanes.camera_news.take(camera_);
   (void)parts_.lanes.scope_now.take(scope_);
+  (void)parts_.lanes.pedal_news.take(pedal_);
   const PaintState& paint = parts_.painter_stage.state();
   Status& status = screen_state_.status;
 
@@ -169,6 +174,7 @@ void PanelStage::choose_notice(Instant now) noexcept {
   if (camera_.frozen) return notice(Notice::Level::warning, "VIDEO FROZEN? The picture repeats");
   if (paint.failed_at != Instant{} && now - paint.failed_at < kNoticeTime)
     return notice(Notice::Level::warning, words_for(paint.last_refusal));
+  if (!pedal_.connected) return notice(Notice::Level::warning, "PEDAL NOT CONNECTED: check its cable");
   if (paint.warned_at != Instant{} && now - paint.warned_at < kNoticeTime)
     return notice(Notice::Level::warning, "PEDAL: stuck; let it go");
   if (paint.undone_at != Instant{} && now - paint.undone_at < kNoticeTime)

@@ -10,6 +10,7 @@
 #include "firmware-host/stages/frame_ledger.hpp"
 #include "firmware-host/stages/lanes.hpp"
 #include "firmware-host/stages/painter_stage.hpp"
+#include "firmware-host/stages/watched_fault.hpp"
 #include "realtime/kernel/clock.hpp"
 #include "realtime/kernel/stage.hpp"
 #include "realtime/sync/freshness.hpp"
@@ -48,6 +49,9 @@ class PanelStage final : public Stage {
   std::uint64_t presented() const noexcept { return presented_; }
   /// The newest share of the surface that carries paint. Any thread.
   double coverage() const noexcept { return coverage_.load(std::memory_order_relaxed); }  // a figure alone
+  /// What the panel last refused a picture with, but for being busy; nothing_yet while it shows them. Any
+  /// thread.
+  PortFault fault() const noexcept { return fault_.get(); }
   /// A person turned the view; takes effect with the next picture. Same thread as step().
   void look_from(const Eye& eye) noexcept { screen_state_.eye = eye; }
 
@@ -72,6 +76,8 @@ class PanelStage final : public Stage {
   ScreenState screen_state_;
   TrackerNews tracker_;
   CameraNews camera_;
+  PedalNews pedal_;
+  WatchedFault fault_;
   ScopeNow scope_;
   std::array<Submitted, 8> submitted_{};
   std::size_t settled_captures_ = 0;

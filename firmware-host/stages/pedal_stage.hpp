@@ -5,6 +5,7 @@
 #include "board/ports/gpio_lines.hpp"
 #include "firmware-host/pedal/pedal_gestures.hpp"
 #include "firmware-host/stages/lanes.hpp"
+#include "firmware-host/stages/watched_fault.hpp"
 #include "realtime/kernel/stage.hpp"
 
 namespace orcart {
@@ -17,6 +18,9 @@ class PedalStage final : public Stage {
   std::string_view name() const noexcept override { return "pedal"; }
   StepReport step(Instant now) noexcept override;
 
+  /// nothing_yet while the pedal is there. Any thread.
+  PortFault fault() const noexcept { return fault_.get(); }
+
  private:
   static constexpr int kMostEdges = 32;  ///< of one step; more are bounce, and wait for the next
   static constexpr Nanos kTriggerWidth = 10ms;
@@ -24,6 +28,7 @@ class PedalStage final : public Stage {
   GpioLines& lines_;
   PedalGestures gestures_;
   Lanes& lanes_;
+  WatchedFault fault_;
 };
 
 }  // namespace orcart

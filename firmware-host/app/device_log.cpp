@@ -1,0 +1,26 @@
+// One line a change.
+#include "firmware-host/app/device_log.hpp"
+
+namespace orcart {
+
+std::string DeviceLog::news(const Cart::Now& now) {
+  struct Watched {
+    std::string_view name;
+    PortFault fault;
+  };
+  const std::array<Watched, 3> watched{{{"camera", now.camera}, {"pedal", now.pedal}, {"panel", now.panel}}};
+  std::string lines;
+  for (std::size_t i = 0; i < watched.size(); ++i) {
+    const PortFault fault = watched[i].fault;
+    if (fault == known_[i]) continue;
+    known_[i] = fault;
+    lines +=
+        std::string(watched[i].name) + ": " +
+        (fault == PortFault::nothing_yet ? std::string("works again")
+                                         : std::string(word_for(fault)) + "; tried again until it works") +
+        "\n";
+  }
+  return lines;
+}
+
+}  // namespace orcart
