@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   orcart::add_emulate(app, exit_code);
   orcart::add_evaluate(app, exit_code);
   orcart::add_paint(app, exit_code);
+  orcart::add_probe(app, exit_code);
   orcart::add_surface(app, exit_code);
   if (argc > 1 && is_unknown_verb(app, argv[1])) return 2;
   CLI11_PARSE(app, argc, argv);

@@ -12,6 +12,7 @@ void add_decode(CLI::App& app, int& exit_code);
 void add_emulate(CLI::App& app, int& exit_code);
 void add_evaluate(CLI::App& app, int& exit_code);
 void add_paint(CLI::App& app, int& exit_code);
+void add_probe(CLI::App& app, int& exit_code);
 void add_surface(CLI::App& app, int& exit_code);
 
 }  // namespace orcart

@@ -1,0 +1,14 @@
+// What the device nodes tell: cameras with their modes and controls, GPIO chips and keyboards, cards and
+// connectors.
+#pragma once
+
+#include "tools/probe/findings.hpp"
+
+namespace orcart {
+
+/// Each opens and asks, and changes nothing; a connector is probed, which may take half a second.
+std::vector<Finding> probe_cameras();
+std::vector<Finding> probe_pedals();
+std::vector<Finding> probe_panels();
+
+}  // namespace orcart

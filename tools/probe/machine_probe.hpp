@@ -1,0 +1,25 @@
+// What the file system of a Linux machine tells: trackers on USB, the kernel's kind, rights to real time.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "tools/probe/findings.hpp"
+
+namespace orcart {
+
+/// What the process may do, asked of the kernel; numbers by hand in tests.
+struct ProcessRights {
+  std::uint64_t locked_memory_bytes = 0;  ///< RLIMIT_MEMLOCK
+  std::uint64_t fifo_priority = 0;        ///< RLIMIT_RTPRIO
+  bool root = false;
+};
+ProcessRights rights_of_this_process();
+
+/// NDI's own USB ids and plain FTDI bridges below `root`/sys/bus/usb, with serial number and port path.
+std::vector<Finding> probe_trackers(const std::filesystem::path& root);
+/// PREEMPT_RT or not, isolated processors, frequency governor, rights to lock memory and to SCHED_FIFO.
+std::vector<Finding> probe_system(const std::filesystem::path& root, const ProcessRights& rights);
+
+}  // namespace orcart
