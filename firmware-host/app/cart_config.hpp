@@ -47,8 +47,8 @@ struct CartConfig {
   }
   /// Whether a device's own time passes in this cart: it needs the wall clock.
   bool any_device() const {
-    return is_device(tracker.kind) || camera.kind != CameraKind::simulated ||
-           pedal.kind == PedalKind::gpio || pedal.kind == PedalKind::keyboard;
+    return is_device(tracker.kind) || camera.kind != CameraKind::simulated || pedal.kind == PedalKind::gpio ||
+           pedal.kind == PedalKind::keyboard;
   }
 };
 

@@ -106,6 +106,25 @@ TEST(DeviceConfig, ReadsAPanel) {
   EXPECT_NE(refused.error().message.find("180"), std::string::npos);
 }
 
+TEST(DeviceConfig, RefusesAScriptedPedalBesideRealDevicesAndTakesNone) {
+  std::string text = text_of(demo_cart());
+  text =
+      replaced(text, "kind = \"simulated\"\nrate_hz", "kind = \"tty\"\ndevice = \"/dev/ttyUSB0\"\nrate_hz");
+  const auto begin = text.find("[camera]"), end = text.find("[panel]");
+  ASSERT_NE(begin, std::string::npos);
+  text.replace(begin, end - begin,
+               "[camera]\nkind = \"v4l2\"\ndevice = \"/dev/video0\"\nstamp = \"dequeued\"\n");
+  const TemporaryFolder folder;
+  const auto refused = read_cart(folder.write("cart.toml", text));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("gpio, keyboard or none"), std::string::npos)
+      << refused.error().message;
+  const auto real = read_cart(folder.write("cart.toml", text + "\n[pedal]\nkind = \"none\"\n"));
+  ASSERT_TRUE(real) << real.error().message;
+  EXPECT_FALSE(real->simulated());
+  EXPECT_TRUE(real->any_device());
+}
+
 TEST(DeviceLog, SaysOnceThatADeviceIsGoneAndOnceThatItIsBack) {
   DeviceLog log;
   EXPECT_EQ(log.news({}), "");
