@@ -61,6 +61,7 @@ void read_rest(TomlReader& reader, ScopeModel& scope) {
   const TomlSection residuals = reader.section("residuals");
   scope.residual_px = residuals.number("px", {.min = 0, .fallback = 0.0});
   scope.residual_mm = residuals.number("mm", {.min = 0, .fallback = 0.0});
+  if (residuals.has("covariance")) scope.covariance = residuals.numbers("covariance", 0);
 }
 
 /// Whether every pixel of the circle that lies in the picture has a direction: the lens is monotone there.
@@ -115,9 +116,12 @@ Result<ScopeModel> read_scope(const std::filesystem::path& file, std::vector<std
   scope.medium = top.choice_of<Medium>(
       "medium", {{"air", Medium::air}, {"water", Medium::water}, {"saline", Medium::saline}});
   scope.calibrated_on = top.text("calibrated_on", "");
+  scope.expires_on = top.text("expires_on", "");
   const TomlSection lens = reader.section("lens");
   read_lens(lens, scope.lens);
-  read_mask(reader.section("mask"), scope, scope.mask);
+  const TomlSection mask = reader.section("mask");
+  read_mask(mask, scope, scope.mask);
+  if (mask.has("notch_rad")) scope.notch_rad = mask.number("notch_rad", {.min = -7, .max = 7});
   const TomlSection cone = reader.section("cone");
   scope.cone_half_angle_rad = cone.number("half_angle_rad", {.min = 0.02, .max = 1.48});
   scope.far_mm = cone.number("far_mm", {.min = 1, .max = 1000, .fallback = 60.0});

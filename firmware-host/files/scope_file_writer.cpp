@@ -101,14 +101,17 @@ Result<void> write_scope(const std::filesystem::path& file, const ScopeModel& sc
   out += line("name", std::string_view(scope.name)) + line("width_px", scope.width_px) +
          line("height_px", scope.height_px) + line("medium", word_for(scope.medium));
   if (!scope.calibrated_on.empty()) out += line("calibrated_on", std::string_view(scope.calibrated_on));
+  if (!scope.expires_on.empty()) out += line("expires_on", std::string_view(scope.expires_on));
   out += "\n[lens]\n" + lens_text(scope.lens);
   out += "\n[mask]\n" + line("cx_px", scope.mask.cx_px) + line("cy_px", scope.mask.cy_px) +
          line("radius_px", scope.mask.radius_px) + line("soft_edge_px", scope.mask.soft_edge_px);
+  if (scope.notch_rad) out += line("notch_rad", *scope.notch_rad);
   out += "\n[cone]\n" + line("half_angle_rad", scope.cone_half_angle_rad) + line("far_mm", scope.far_mm);
   out += "\n[poses]\n" + line("X_SC", scope.X_SC) + line("X_CE", scope.X_CE);
   out += "\n[fall_off]\n" + line("reference_mm", scope.fall_off.reference_mm) +
          line("vignetting_cos_power", scope.fall_off.vignetting_cos_power);
   out += "\n[residuals]\n" + line("px", scope.residual_px) + line("mm", scope.residual_mm);
+  if (!scope.covariance.empty()) out += list("covariance", scope.covariance.data(), scope.covariance.size());
   return write_whole_file(file, out);
 }
 

@@ -1,7 +1,9 @@
 // A calibrated endoscope: what scope.toml, the calibration passport, says of it.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "realtime/geometry/pose.hpp"
 #include "realtime/optics/lens.hpp"
@@ -36,9 +38,13 @@ struct ScopeModel {
   Pose<C, E> X_CE;                 ///< distal window centre in camera
   FallOff fall_off;
   Medium medium = Medium::air;
-  std::string calibrated_on;  ///< ISO date
-  double residual_px = 0;     ///< RMS of the calibration, pixels
-  double residual_mm = 0;     ///< RMS of the hand-eye, mm
+  std::string calibrated_on;        ///< ISO date
+  std::string expires_on;           ///< ISO date; empty where it never does
+  double residual_px = 0;           ///< RMS of the calibration, pixels
+  double residual_mm = 0;           ///< RMS of the hand-eye, mm
+  std::optional<double> notch_rad;  ///< of the mask's notch about its centre, from x towards y, square pixels
+  /// Of fx fy cx cy and the free coefficients, square and row by row; empty where it is not known.
+  std::vector<double> covariance;
 };
 
 }  // namespace orcart

@@ -102,6 +102,9 @@ ScopeModel scope_with(LensModel model) {
   scope.fall_off = {.reference_mm = 12.5, .vignetting_cos_power = 2};
   scope.residual_px = 0.28;
   scope.residual_mm = 1.0 / 7;
+  scope.expires_on = "2027-11-20";
+  scope.notch_rad = -0.21;
+  scope.covariance = {2, 1.0 / 3, 1.0 / 3, 4};
   return scope;
 }
 
@@ -127,6 +130,9 @@ TEST_P(EachLens, ComesBackAsItWasWritten) {
   EXPECT_EQ(back->X_CE.translation_mm, scope.X_CE.translation_mm);
   EXPECT_EQ(back->fall_off.vignetting_cos_power, scope.fall_off.vignetting_cos_power);
   EXPECT_EQ(back->residual_mm, scope.residual_mm);
+  EXPECT_EQ(back->expires_on, scope.expires_on);
+  EXPECT_EQ(back->notch_rad, scope.notch_rad);
+  EXPECT_EQ(back->covariance, scope.covariance);
 }
 
 INSTANTIATE_TEST_SUITE_P(ScopeFile, EachLens,
