@@ -28,11 +28,15 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", ORCART_VERSION);
   int exit_code = 0;
   orcart::add_bench(app, exit_code);
+  orcart::add_calibrate(app, exit_code);
   orcart::add_decode(app, exit_code);
   orcart::add_emulate(app, exit_code);
   orcart::add_evaluate(app, exit_code);
   orcart::add_paint(app, exit_code);
   orcart::add_probe(app, exit_code);
+  orcart::add_pivot(app, exit_code);
+  orcart::add_rectify(app, exit_code);
+  orcart::add_register(app, exit_code);
   orcart::add_surface(app, exit_code);
   if (argc > 1 && is_unknown_verb(app, argv[1])) return 2;
   CLI11_PARSE(app, argc, argv);

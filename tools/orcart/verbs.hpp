@@ -8,11 +8,16 @@ namespace orcart {
 
 /// Each verb sets `exit_code` in its callback: 0 only on success. Errors are one sentence on stderr.
 void add_bench(CLI::App& app, int& exit_code);
+void add_calibrate(CLI::App& app, int& exit_code);
 void add_decode(CLI::App& app, int& exit_code);
 void add_emulate(CLI::App& app, int& exit_code);
 void add_evaluate(CLI::App& app, int& exit_code);
 void add_paint(CLI::App& app, int& exit_code);
 void add_probe(CLI::App& app, int& exit_code);
+void add_hand_eye(CLI::App& calibrate, int& exit_code);
+void add_pivot(CLI::App& app, int& exit_code);
+void add_rectify(CLI::App& app, int& exit_code);
+void add_register(CLI::App& app, int& exit_code);
 void add_surface(CLI::App& app, int& exit_code);
 
 }  // namespace orcart

@@ -1,0 +1,152 @@
+// Boards are found, posed through the passport's lens, turned right way up, and handed to the solvers.
+#include "tools/calibration/hand_eye_command.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <Eigen/Geometry>
+#include <opencv2/calib3d.hpp>
+
+#include "tools/registration/json_text.hpp"
+
+namespace orcart {
+namespace {
+
+Result<std::vector<Pose<T, S>>> paired(const std::vector<std::filesystem::path>& images,
+                                       const PosesFile& poses, const std::filesystem::path& file) {
+  std::map<std::string, Pose<T, S>> by_name;
+  for (const NamedPose& pose : poses.poses) by_name[pose.name] = pose.X_TS;
+  std::vector<Pose<T, S>> result;
+  for (const auto& image : images) {
+    auto found = by_name.find(image.filename().string());
+    if (found == by_name.end()) found = by_name.find(image.stem().string());
+    if (found != by_name.end()) result.push_back(found->second);
+  }
+  if (result.size() == images.size()) return result;
+  if (poses.poses.size() != images.size())
+    return fail(file.string() + ": " + std::to_string(poses.poses.size()) + " poses for " +
+                std::to_string(images.size()) +
+                " pictures; one a picture, by its name or in order, is accepted");
+  result.clear();
+  for (const NamedPose& pose : poses.poses) result.push_back(pose.X_TS);
+  return result;
+}
+
+}  // namespace
+
+Result<Pose<C, B>> board_pose(const BoardView& view, const Lens& lens) {
+  std::vector<cv::Point3d> board;
+  std::vector<cv::Point2d> flat;
+  for (const BoardCorner& c : view.corners) {
+    const auto direction = direction_of(lens, c.pixel_px);
+    if (!direction || direction->z() < 0.05) continue;
+    board.emplace_back(c.board_mm.x(), c.board_mm.y(), 0);
+    flat.emplace_back(direction->x() / direction->z(), direction->y() / direction->z());
+  }
+  cv::Vec3d r, t;
+  if (board.size() < 6 || !cv::solvePnP(board, flat, cv::Matx33d::eye(), cv::noArray(), r, t))
+    return fail(view.image.string() + ": the board's pose cannot be told through this lens");
+  const Eigen::Vector3d turn(r[0], r[1], r[2]);
+  return Pose<C, B>{.rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix(),
+                    .translation_mm = {t[0], t[1], t[2]}};
+}
+
+namespace {
+
+/// Corners that the passport's lens contradicts: farther off than six robust deviations, and at least a
+/// pixel.
+void drop_outliers(BoardView& view, const Pose<C, B>& X_CB, const Lens& lens) {
+  std::vector<double> off;
+  for (const BoardCorner& c : view.corners) {
+    const auto seen = project(lens, (X_CB * Point<B>{c.board_mm}).mm);
+    off.push_back(seen ? (*seen - c.pixel_px).norm() : 1e9);
+  }
+  auto sorted = off;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double limit = std::max(1.0, 6 * 0.85 * *middle);
+  std::size_t next = 0;
+  std::erase_if(view.corners, [&](const BoardCorner&) { return off[next++] > limit; });
+}
+
+/// The lens moves along only where that places views better that were left out.
+Result<void> refine(const std::vector<HandEyeView>& views, const Lens& lens, const TrackerNoise& noise,
+                    HandEyeCalibration& result) {
+  LensRole role = LensRole::held;
+  if (views.size() > 3) {
+    const auto held = leave_one_out_mm(views, lens, noise, LensRole::held);
+    const auto moved = leave_one_out_mm(views, lens, noise, LensRole::refined);
+    if (held) result.leave_one_out_mm = *held;
+    if (moved && (!held || *moved < *held)) {
+      role = LensRole::refined;
+      result.leave_one_out_mm = *moved;
+    }
+    result.notes.emplace_back(
+        role == LensRole::held
+            ? "the lens was held: moving it along places views no better that were left out"
+            : "the lens was refined along with the hand-eye pose");
+  }
+  auto refined = refine_hand_eye(views, lens, noise, role);
+  if (!refined) return tl::unexpected(refined.error());
+  result.refined = std::move(*refined);
+  return {};
+}
+
+}  // namespace
+
+Result<HandEyeCalibration> calibrate_hand_eye(const HandEyeCommand& command, const ScopeModel& scope,
+                                              const Progress& progress) {
+  constexpr double kLargestScatter_mm = 8;
+  const auto poses = read_poses(command.poses);
+  if (!poses) return tl::unexpected(poses.error());
+  const auto X_TS = paired(command.images, *poses, command.poses);
+  if (!X_TS) return tl::unexpected(X_TS.error());
+  const auto seen = see_boards(command.images, command.pattern, progress);
+  if (!seen) return tl::unexpected(seen.error());
+  HandEyeCalibration result{.scope = scope, .notes = poses->notes};
+  std::vector<HandEyeView> views;
+  for (std::size_t i = 0; i < seen->views.size(); ++i) {
+    BoardView view = seen->views[i];
+    const std::string name = view.image.filename().string();
+    if (view.width_px != scope.width_px || view.height_px != scope.height_px)
+      return fail(view.image.string() + json::format(": %dx%d px; the scope's %dx%d are accepted",
+                                                     view.width_px, view.height_px, scope.width_px,
+                                                     scope.height_px));
+    if (view.corners.empty() || view.anchor == Anchor::none) {
+      result.notes.push_back(
+          name + " is not used: " +
+          (view.corners.empty() ? view.remark : view.remark + ", which corner is which cannot be told"));
+      continue;
+    }
+    auto X_CB = board_pose(view, scope.lens);
+    if (!X_CB) return tl::unexpected(X_CB.error());
+    drop_outliers(view, *X_CB, scope.lens);
+    X_CB = board_pose(view, scope.lens);
+    if (!X_CB) return tl::unexpected(X_CB.error());
+    views.push_back({.X_TS = (*X_TS)[i], .X_CB = *X_CB, .board = view});
+    result.names.push_back(name);
+  }
+  settle_half_turns(views, command.pattern);
+  auto closed = hand_eye_closed_form(views);
+  if (!closed) return tl::unexpected(closed.error());
+  result.closed_form = std::move(*closed);
+  if (auto refined = refine(views, scope.lens, command.noise, result); !refined)
+    return tl::unexpected(refined.error());
+  if (result.refined.scatter_mm > kLargestScatter_mm) {
+    const auto worst = std::max_element(result.refined.scatters_mm.begin(), result.refined.scatters_mm.end());
+    return fail(json::format(
+        "the board scatters by %.1f mm RMS (most in %s): it or its reference moved, or poses and pictures do "
+        "not belong "
+        "together; up to %.0f mm is accepted",
+        result.refined.scatter_mm,
+        result.names[static_cast<std::size_t>(worst - result.refined.scatters_mm.begin())].c_str(),
+        kLargestScatter_mm));
+  }
+  result.scope.lens = result.refined.lens;
+  result.scope.X_SC = result.refined.X_SC;
+  result.scope.residual_mm =
+      result.leave_one_out_mm > 0 ? result.leave_one_out_mm : result.refined.scatter_mm;
+  return result;
+}
+
+}  // namespace orcart

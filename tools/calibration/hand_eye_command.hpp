@@ -1,0 +1,38 @@
+// What `orcart calibrate handeye` does: pictures of a board with the marker's poses in, the passport with
+// X_SC out.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "realtime/optics/scope_model.hpp"
+#include "tools/calibration/camera_command.hpp"
+#include "tools/calibration/hand_eye.hpp"
+
+namespace orcart {
+
+struct HandEyeCommand {
+  std::vector<std::filesystem::path> images;
+  std::filesystem::path poses;
+  Pattern pattern;
+  TrackerNoise noise;
+};
+
+struct HandEyeCalibration {
+  ScopeModel scope;  ///< the passport given, with X_SC, the refined lens and residual_mm
+  HandEyeFit closed_form, refined;
+  double leave_one_out_mm = 0;
+  std::vector<std::string> names;  ///< of the views used
+  std::vector<std::string> notes;
+};
+
+/// Poses belong to pictures by name (of the file, with or without its ending) where all names are there, else
+/// by order.
+Result<HandEyeCalibration> calibrate_hand_eye(const HandEyeCommand& command, const ScopeModel& scope,
+                                              const Progress& progress);
+
+/// The board's pose for one view through a known lens.
+Result<Pose<C, B>> board_pose(const BoardView& view, const Lens& lens);
+
+}  // namespace orcart

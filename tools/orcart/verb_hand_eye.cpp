@@ -1,0 +1,96 @@
+// orcart calibrate handeye: where the camera sits on its marker.
+#include <cstdio>
+#include <memory>
+
+#include "firmware-host/files/scope_file.hpp"
+#include "tools/calibration/hand_eye_command.hpp"
+#include "tools/orcart/verbs.hpp"
+#include "tools/registration/json_text.hpp"
+
+namespace orcart {
+namespace {
+
+constexpr const char* kExample =
+    "Example:\n  orcart calibrate handeye image*.png --poses poses.csv --pattern chessboard:18x16:2mm "
+    "--scope scope.toml\n\n"
+    "poses.csv: name,m00,...,m23, the scope marker in the tracker (or in a reference beside the board), mm; "
+    "by the pictures' names or in\n"
+    "their order. The passport is written back with X_SC unless --out names another.";
+
+struct Arguments {
+  HandEyeCommand command;
+  std::string pattern, scope, out;
+  bool json = false;
+};
+
+std::string answer(const HandEyeCalibration& c, bool as_json) {
+  const Eigen::Vector3d &closed = c.closed_form.X_SC.translation_mm, &refined = c.refined.X_SC.translation_mm;
+  std::vector<std::string> notes, views;
+  for (const std::string& note : c.notes) notes.push_back(json::text(note));
+  for (std::size_t i = 0; i < c.names.size(); ++i)
+    views.push_back("{\"image\": " + json::text(c.names[i]) +
+                    ", \"scatter_mm\": " + json::number(c.refined.scatters_mm[i]) + "}");
+  if (as_json)
+    return "{\"X_SC\": " + json::pose(c.refined.X_SC) +
+           ",\n \"closed_form_X_SC\": " + json::pose(c.closed_form.X_SC) +
+           ",\n \"scatter_mm\": " + json::number(c.refined.scatter_mm) +
+           ", \"closed_form_scatter_mm\": " + json::number(c.closed_form.scatter_mm) +
+           ", \"leave_one_out_mm\": " + json::number(c.leave_one_out_mm) +
+           ", \"rms_px\": " + json::number(c.refined.rms_px) + ",\n \"views\": " + json::list(views) +
+           ",\n \"notes\": " + json::list(notes) + "}\n";
+  std::string out =
+      json::format("closed form  camera at %.3f %.3f %.3f mm on the marker, board scatter %.3f mm RMS\n",
+                   closed.x(), closed.y(), closed.z(), c.closed_form.scatter_mm);
+  out += json::format(
+      "refined      camera at %.3f %.3f %.3f mm on the marker, board scatter %.3f mm RMS, %.3f px; leaving "
+      "each view out in "
+      "turn %.3f mm\n",
+      refined.x(), refined.y(), refined.z(), c.refined.scatter_mm, c.refined.rms_px, c.leave_one_out_mm);
+  for (std::size_t i = 0; i < c.names.size(); ++i)
+    out += json::format("  %-32s %.3f mm\n", c.names[i].c_str(), c.refined.scatters_mm[i]);
+  for (const std::string& note : c.notes) out += "note: " + note + "\n";
+  return out;
+}
+
+Result<void> run(Arguments& arguments) {
+  const auto pattern = parse_pattern(arguments.pattern);
+  if (!pattern) return tl::unexpected(pattern.error());
+  arguments.command.pattern = *pattern;
+  const auto scope = read_scope(arguments.scope);
+  if (!scope) return tl::unexpected(scope.error());
+  const auto calibration = calibrate_hand_eye(arguments.command, *scope, {});
+  if (!calibration) return tl::unexpected(calibration.error());
+  if (auto written = write_scope(arguments.out.empty() ? arguments.scope : arguments.out, calibration->scope);
+      !written)
+    return written;
+  std::fputs(answer(*calibration, arguments.json).c_str(), stdout);
+  return {};
+}
+
+}  // namespace
+
+void add_hand_eye(CLI::App& calibrate, int& exit_code) {
+  CLI::App* verb = calibrate.add_subcommand("handeye", "Where the camera sits on its marker");
+  verb->footer(kExample);
+  const auto arguments = std::make_shared<Arguments>();
+  verb->add_option("images", arguments->command.images, "pictures of the pattern")->required();
+  verb->add_option("--poses", arguments->command.poses, "the marker's poses")->required();
+  verb->add_option("--pattern", arguments->pattern, "as for `orcart calibrate camera`")->required();
+  verb->add_option("--scope", arguments->scope, "the scope's passport")->required();
+  verb->add_option("--out", arguments->out, "the passport to write; the one read unless told");
+  verb->add_option("--marker-noise", arguments->command.noise.marker_mm, "of one marker, mm RMS")
+      ->check(CLI::Range(0.001, 5.0))
+      ->capture_default_str();
+  verb->add_option("--marker-radius", arguments->command.noise.body_radius_mm,
+                   "of the body's markers about their middle, mm")
+      ->check(CLI::Range(5.0, 500.0))
+      ->capture_default_str();
+  verb->add_flag("--json", arguments->json, "the figures as JSON");
+  verb->callback([arguments, &exit_code] {
+    const auto done = run(*arguments);
+    if (!done) std::fprintf(stderr, "orcart calibrate handeye: %s\n", done.error().message.c_str());
+    exit_code = done ? 0 : 1;
+  });
+}
+
+}  // namespace orcart

@@ -1,0 +1,134 @@
+// Reads poses row by row; every refusal names the file and its line.
+#include "tools/registration/poses_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware-host/files/text_cursor.hpp"
+#include "firmware-host/files/whole_file.hpp"
+#include "tools/registration/json_text.hpp"
+
+namespace orcart {
+namespace {
+
+constexpr std::uintmax_t kLargestFileBytes = 64U << 20U;
+constexpr const char* kAccepted =
+    "name,m00,...,m23 (a name and 12 numbers, row by row), 16 numbers, or 4 numbers on each of 4 lines are "
+    "accepted";
+
+struct Row {
+  std::string name;
+  std::vector<double> numbers;
+};
+
+/// A row's numbers, and the word before them where there is one. False where a word stands among the numbers.
+bool split_row(std::string_view line, Row& row) {
+  std::string blanks(line);
+  std::replace_if(
+      blanks.begin(), blanks.end(), [](char c) { return c == ',' || c == ';' || c == '\t'; }, ' ');
+  TextCursor cursor(blanks);
+  for (std::string_view word = cursor.word(); !word.empty(); word = cursor.word()) {
+    const auto number = TextCursor::parse_number<double>(word);
+    if (number && std::isfinite(*number)) {
+      row.numbers.push_back(*number);
+    } else if (row.name.empty() && row.numbers.empty()) {
+      row.name = word;
+    } else {
+      return false;
+    }
+  }
+  if (row.numbers.size() == 13 || row.numbers.size() == 17) {
+    row.name = std::string(line.substr(0, line.find_first_of(", \t")));
+    row.numbers.erase(row.numbers.begin());
+  }
+  return true;
+}
+
+Result<NamedPose> pose_of(const Row& row, const std::string& place, std::vector<std::string>& notes) {
+  const std::vector<double>& m = row.numbers;
+  if (m.size() == 16 &&
+      !(std::abs(m[12]) + std::abs(m[13]) + std::abs(m[14]) < 1e-6 && std::abs(m[15] - 1) < 1e-6))
+    return fail(place + "the fourth row of the matrix is not 0 0 0 1; a rigid transform is accepted");
+  Eigen::Matrix3d given;
+  given << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
+  const NearestRotation nearest = nearest_rotation(given);
+  const std::string off = json::format("the pose differs by %.2g from a rotation", nearest.deviation);
+  if (nearest.reflected) return fail(place + "the pose holds a reflection; a rotation is accepted");
+  if (!(nearest.deviation <= 0.01)) return fail(place + off + "; up to 0.01 is accepted");
+  if (nearest.deviation > 1e-4) notes.push_back(place + off + " and was made one");
+  return NamedPose{.name = row.name,
+                   .X_TS = {.rotation = nearest.rotation, .translation_mm = {m[3], m[7], m[11]}}};
+}
+
+/// Collects matrices that stand on several lines.
+Result<void> read_text(std::string_view text, const std::filesystem::path& file, PosesFile& poses) {
+  TextCursor cursor(text);
+  Row open;
+  while (!cursor.at_end()) {
+    const std::string_view line = cursor.line();
+    const std::string place = file.string() + ":" + std::to_string(cursor.line_number()) + ": ";
+    Row row;
+    const bool clean = split_row(line, row);
+    if (line.find_first_not_of(" \t") == std::string_view::npos || line.starts_with('#')) continue;
+    const bool header = poses.poses.empty() && row.numbers.empty() && open.numbers.empty();
+    if (header && (clean || line.find("m00") != std::string_view::npos)) continue;
+    if (!clean && header && line.find(',') != std::string_view::npos &&
+        line.find_first_of("0123456789") == std::string_view::npos)
+      continue;
+    if (clean && row.numbers.size() == 4 && row.name.empty()) {
+      open.numbers.insert(open.numbers.end(), row.numbers.begin(), row.numbers.end());
+      if (open.numbers.size() < 16) continue;
+      row = std::move(open);
+      open = {};
+    }
+    if (!clean || (row.numbers.size() != 12 && row.numbers.size() != 16))
+      return fail(place + "has " + std::to_string(row.numbers.size()) + " numbers" +
+                  (clean ? "" : " before a word") + "; " + kAccepted);
+    if (row.name.empty()) row.name = std::to_string(poses.poses.size() + 1);
+    auto pose = pose_of(row, place, poses.notes);
+    if (!pose) return tl::unexpected(pose.error());
+    poses.poses.push_back(std::move(*pose));
+  }
+  if (!open.numbers.empty()) return fail(file.string() + ": ends inside a matrix; " + kAccepted);
+  return {};
+}
+
+Result<void> read_one(const std::filesystem::path& file, PosesFile& poses) {
+  const auto bytes = read_whole_file(file, kLargestFileBytes);
+  if (!bytes) return tl::unexpected(bytes.error());
+  return read_text({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file, poses);
+}
+
+/// A tracker that is within three millimetres of everything it sees, over more than one pose, was written in
+/// metres.
+Result<void> check_unit(const PosesFile& poses, const std::filesystem::path& file) {
+  double largest = 0;
+  for (const NamedPose& p : poses.poses) largest = std::max(largest, p.X_TS.translation_mm.norm());
+  if (poses.poses.size() > 1 && largest > 0 && largest < 6)
+    return fail(
+        file.string() +
+        json::format(
+            ": no translation is longer than %.3g; that looks like metres, and millimetres are accepted",
+            largest));
+  return {};
+}
+
+}  // namespace
+
+Result<PosesFile> read_poses(const std::filesystem::path& file) {
+  PosesFile poses;
+  std::vector<std::filesystem::path> files{file};
+  if (std::filesystem::is_directory(file)) {
+    files.clear();
+    for (const auto& entry : std::filesystem::directory_iterator(file))
+      if (entry.is_regular_file()) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+  }
+  for (const auto& one : files)
+    if (auto read = read_one(one, poses); !read) return tl::unexpected(read.error());
+  if (poses.poses.empty()) return fail(file.string() + ": holds no pose; " + kAccepted);
+  if (auto unit = check_unit(poses, file); !unit) return tl::unexpected(unit.error());
+  return poses;
+}
+
+}  // namespace orcart

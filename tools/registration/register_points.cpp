@@ -1,0 +1,191 @@
+// Pairs the points, looks for one that does not belong, fits, and says what the set's shape means for the
+// target.
+#include "tools/registration/register_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include "realtime/registration/rigid_fit.hpp"
+#include "tools/registration/json_text.hpp"
+#include "tools/registration/point_matching.hpp"
+
+namespace orcart {
+namespace {
+
+struct Pairs {
+  std::vector<std::string> fixed_names, moving_names;
+  std::vector<Eigen::Vector3d> fixed_mm, moving_mm;
+
+  void add(const NamedPoint& fixed, const NamedPoint& moving) {
+    fixed_names.push_back(fixed.name), moving_names.push_back(moving.name);
+    fixed_mm.push_back(fixed.mm), moving_mm.push_back(moving.mm);
+  }
+  Pairs without(std::size_t left_out) const {
+    Pairs others = *this;
+    const auto at = static_cast<std::ptrdiff_t>(left_out);
+    others.fixed_names.erase(others.fixed_names.begin() + at),
+        others.moving_names.erase(others.moving_names.begin() + at);
+    others.fixed_mm.erase(others.fixed_mm.begin() + at),
+        others.moving_mm.erase(others.moving_mm.begin() + at);
+    return others;
+  }
+  Result<RigidFit> fit() const { return rigid_fit({.from_mm = moving_mm, .to_mm = fixed_mm}); }
+};
+
+const NamedPoint* find(const std::vector<NamedPoint>& points, const std::string& name) {
+  const auto found =
+      std::find_if(points.begin(), points.end(), [&name](const NamedPoint& p) { return p.name == name; });
+  return found == points.end() ? nullptr : &*found;
+}
+
+bool all_named(const RegistrationTask& task) {
+  return std::all_of(task.fixed.begin(), task.fixed.end(),
+                     [&](const NamedPoint& p) { return find(task.moving, p.name) != nullptr; });
+}
+
+Result<Pairs> by_name(const RegistrationTask& task) {
+  Pairs pairs;
+  for (const NamedPoint& fixed : task.fixed) {
+    const NamedPoint* moving = find(task.moving, fixed.name);
+    if (moving == nullptr)
+      return fail("the fiducial \"" + fixed.name +
+                  "\" was not measured; a point of that name, or --order, is accepted");
+    pairs.add(fixed, *moving);
+  }
+  return pairs;
+}
+
+Result<Pairs> by_order(const RegistrationTask& task) {
+  if (task.fixed.size() != task.moving.size())
+    return fail("there are " + std::to_string(task.fixed.size()) + " fiducials and " +
+                std::to_string(task.moving.size()) +
+                " measured points; as many of both are accepted, or --order unknown");
+  Pairs pairs;
+  for (std::size_t i = 0; i < task.fixed.size(); ++i) pairs.add(task.fixed[i], task.moving[i]);
+  return pairs;
+}
+
+std::vector<Eigen::Vector3d> places(const std::vector<NamedPoint>& points) {
+  std::vector<Eigen::Vector3d> result;
+  for (const NamedPoint& p : points) result.push_back(p.mm);
+  return result;
+}
+
+Result<Pairs> by_distances(const RegistrationTask& task) {
+  const auto matched = match_points(places(task.fixed), places(task.moving), std::max(3.0, 6 * task.fle_mm));
+  if (!matched) return tl::unexpected(matched.error());
+  Pairs pairs;
+  for (std::size_t i = 0; i < task.fixed.size(); ++i) pairs.add(task.fixed[i], task.moving[(*matched)[i]]);
+  return pairs;
+}
+
+Result<Pairs> pair_up(const RegistrationTask& task) {
+  switch (task.pairing.value_or(all_named(task) ? Pairing::by_name : Pairing::by_order)) {
+    case Pairing::by_name:
+      return by_name(task);
+    case Pairing::by_order:
+      return by_order(task);
+    case Pairing::unknown:
+      break;
+  }
+  return by_distances(task);
+}
+
+/// One point of five or more whose absence makes all others agree.
+void take_outlier(Pairs& pairs, Registration& result) {
+  const auto whole = pairs.fit();
+  if (!whole || whole->fre_mm < 2 * result.fle_mm) return;
+  if (pairs.fixed_mm.size() < 5) {
+    result.notes.push_back(json::format(
+        "FRE %.2f mm is large against the declared error of %.2f mm; with %zu points it cannot be told "
+        "which is wrong: five or more can",
+        whole->fre_mm, result.fle_mm, pairs.fixed_mm.size()));
+    return;
+  }
+  double best = whole->fre_mm, second = whole->fre_mm;
+  std::size_t worst = 0;
+  for (std::size_t i = 0; i < pairs.fixed_mm.size(); ++i) {
+    const auto fit = pairs.without(i).fit();
+    if (!fit) continue;
+    if (fit->fre_mm < best) {
+      second = best, best = fit->fre_mm, worst = i;
+    } else {
+      second = std::min(second, fit->fre_mm);
+    }
+  }
+  if (best > 0.4 * whole->fre_mm || second < 1.8 * best) return;
+  const auto fit = pairs.without(worst).fit();
+  result.outlier = pairs.fixed_names[worst];
+  result.outlier_mm =
+      (fit->rotation * pairs.moving_mm[worst] + fit->translation_mm - pairs.fixed_mm[worst]).norm();
+  result.notes.push_back(
+      json::format("\"%s\" lies %.1f mm off and was left out: FRE %.2f mm with it, %.2f mm without",
+                   result.outlier.c_str(), result.outlier_mm, whole->fre_mm, best));
+  pairs = pairs.without(worst);
+}
+
+void measure_shape(const Pairs& pairs, Registration& result) {
+  const auto count = static_cast<double>(pairs.fixed_mm.size());
+  for (const auto& p : pairs.fixed_mm) result.centroid_mm += p / count;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const auto& p : pairs.fixed_mm)
+    covariance += (p - result.centroid_mm) * (p - result.centroid_mm).transpose() / count;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  result.axes = solver.eigenvectors();
+  const Eigen::Vector3d along = solver.eigenvalues();
+  for (Eigen::Index k = 0; k < 3; ++k) result.spread2_mm2[k] = along.sum() - along[k];
+  const double length = std::sqrt(along[2]), width = std::sqrt(along[1]),
+               depth = std::sqrt(std::max(0.0, along[0]));
+  if (width < 0.15 * length) {
+    const Eigen::Vector3d beside = result.centroid_mm + 50 * result.axes.col(1);
+    result.notes.push_back(json::format(
+        "the points lie nearly on one line (%.0f mm long, %.1f mm wide): 50 mm beside it the expected error "
+        "is "
+        "%.1f mm, on it %.1f mm; add one beside the line",
+        length, width, predicted_tre_mm(result, beside), predicted_tre_mm(result, result.centroid_mm)));
+  } else if (depth < 0.1 * width) {
+    const Eigen::Vector3d above = result.centroid_mm + 50 * result.axes.col(0);
+    result.notes.push_back(
+        json::format("the points lie nearly in one plane (%.1f mm deep): 50 mm above it the expected error "
+                     "is %.1f mm, in it "
+                     "%.1f mm, and only the guard against reflections tells its two sides apart",
+                     depth, predicted_tre_mm(result, above), predicted_tre_mm(result, result.centroid_mm)));
+  }
+}
+
+}  // namespace
+
+Result<Registration> register_points(const RegistrationTask& task) {
+  auto pairs = pair_up(task);
+  if (!pairs) return tl::unexpected(pairs.error());
+  Registration result;
+  result.fle_mm = task.fle_mm;
+  take_outlier(*pairs, result);
+  const auto fit = pairs->fit();
+  if (!fit) return tl::unexpected(fit.error());
+  result.X_MR = {.rotation = fit->rotation, .translation_mm = fit->translation_mm};
+  result.fre_mm = fit->fre_mm;
+  for (std::size_t i = 0; i < pairs->fixed_mm.size(); ++i)
+    result.points.push_back(
+        {.fixed = pairs->fixed_names[i],
+         .moving = pairs->moving_names[i],
+         .fixed_mm = pairs->fixed_mm[i],
+         .error_mm =
+             (fit->rotation * pairs->moving_mm[i] + fit->translation_mm - pairs->fixed_mm[i]).norm()});
+  measure_shape(*pairs, result);
+  return result;
+}
+
+double predicted_tre_mm(const Registration& registration, const Eigen::Vector3d& target_mm) {
+  const Eigen::Vector3d from = registration.axes.transpose() * (target_mm - registration.centroid_mm);
+  double sum = 0;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double distance2 = from.squaredNorm() - from[k] * from[k];
+    sum += distance2 / std::max(1e-9, registration.spread2_mm2[k]) / 3;
+  }
+  return registration.fle_mm * std::sqrt((1 + sum) / static_cast<double>(registration.points.size()));
+}
+
+}  // namespace orcart

@@ -1,0 +1,48 @@
+// The patient's reference in mesh space from paired points, with what such a registration may be trusted for.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "realtime/geometry/pose.hpp"
+#include "tools/registration/points_file.hpp"
+
+namespace orcart {
+
+enum class Pairing { by_name, by_order, unknown };
+
+struct RegistrationTask {
+  std::vector<NamedPoint> fixed;   ///< in M
+  std::vector<NamedPoint> moving;  ///< in R
+  std::optional<Pairing> pairing;  ///< unset: by name where all fixed names are there, else by order
+  double fle_mm = 0.5;  ///< fiducial localisation error, RMS, declared: never taken from this patient's FRE
+};
+
+struct RegisteredPoint {
+  std::string fixed, moving;
+  Eigen::Vector3d fixed_mm = Eigen::Vector3d::Zero();
+  double error_mm = 0;
+};
+
+struct Registration {
+  Pose<M, R> X_MR;
+  double fre_mm = 0;
+  std::vector<RegisteredPoint> points;
+  std::string outlier;    ///< name of the fixed point left out; empty where none was
+  double outlier_mm = 0;  ///< how far it lies off
+  Eigen::Vector3d centroid_mm = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();     ///< principal axes of the fiducials, columns
+  Eigen::Vector3d spread2_mm2 = Eigen::Vector3d::Ones();  ///< mean squared distance from each axis
+  double fle_mm = 0;
+  std::vector<std::string> notes;  ///< e.g. what a nearly flat set does to the error beside it
+};
+
+/// Refuses fewer than three pairs, points on one line, and names that do not pair up.
+Result<Registration> register_points(const RegistrationTask& task);
+
+/// Expected target registration error, RMS, at a place of the mesh (Fitzpatrick, West and Maurer 1998,
+/// equation 46).
+double predicted_tre_mm(const Registration& registration, const Eigen::Vector3d& target_mm);
+
+}  // namespace orcart

@@ -1,0 +1,41 @@
+// PLUS sequence files (.igs.mha): tracked tools over time, and the places at which a stylus rested.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "realtime/base/result.hpp"
+#include "realtime/geometry/pose.hpp"
+#include "tools/registration/points_file.hpp"
+
+namespace orcart {
+
+struct W {};  ///< whatever frame a file names; the name says which
+
+struct SequenceFrame {
+  double time_s = 0;
+  std::map<std::string, Pose<W, W>>
+      transforms;  ///< by name as in the file, e.g. "StylusToTracker"; only those with status OK
+};
+
+struct SequenceFile {
+  std::vector<SequenceFrame> frames;
+  std::size_t transforms_ok = 0, transforms_not_ok = 0;
+};
+
+/// Reads the header; the pictures behind it are left alone.
+Result<SequenceFile> read_sequence(const std::filesystem::path& file);
+
+struct RestSearch {
+  Eigen::Vector3d tip_mm = Eigen::Vector3d::Zero();  ///< of the stylus, in its marker
+  std::size_t frames = 20;                           ///< a rest lasts at least so many
+  double within_mm = 2;                              ///< of their mean
+};
+
+/// The stylus tip in the reference, averaged over each rest, named "1", "2", ... Refuses a file without both
+/// tools.
+Result<std::vector<NamedPoint>> stylus_rests(const SequenceFile& sequence, const RestSearch& search);
+
+}  // namespace orcart
