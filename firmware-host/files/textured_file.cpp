@@ -10,6 +10,7 @@
 
 #include "firmware-host/files/picture_file.hpp"
 #include "firmware-host/files/surface_checks.hpp"
+#include "firmware-host/files/textured_glb.hpp"
 #include "firmware-host/files/whole_file.hpp"
 
 namespace orcart {
@@ -42,8 +43,10 @@ class FileSet {
   /// Where a file is to be written; it will be renamed in the order of these calls.
   fs::path add(const std::string& name) {
     names_.push_back(name);
-    return staging_ / name;
+    return scratch(name);
   }
+  /// Where a file is to be written that only helps to make the others.
+  fs::path scratch(const std::string& name) const { return staging_ / name; }
   Result<void> publish() const {
     for (const std::string& name : names_)
       if (fs::is_directory(target_ / name))
@@ -155,25 +158,50 @@ std::vector<std::uint8_t> over_grey(std::span<const std::uint8_t> rgba) {
 
 }  // namespace
 
+namespace {
+
+constexpr std::uintmax_t kLargestPictureBytes = 1U << 30;
+
+bool is_writable(const std::string& extension) {
+  return extension == ".obj" || extension == ".ply" || extension == ".glb";
+}
+
+/// The set's files but the picture, which is there already as `png`.
+Result<void> write_set(FileSet& set, const fs::path& file, const TexturedSurface& textured,
+                       const fs::path& png) {
+  const std::string extension = file.extension().string(), name = file.filename().string();
+  if (extension == ".glb") {
+    const auto picture = read_whole_file(png, kLargestPictureBytes);
+    if (!picture) return tl::unexpected(picture.error());
+    const std::string_view bytes(reinterpret_cast<const char*>(picture->data()), picture->size());
+    return write_whole_file(set.add(name), glb_bytes(textured, bytes));
+  }
+  if (extension == ".ply")
+    return write_whole_file(set.add(name), ply_bytes(textured, png.filename().string()));
+  const std::string mtl = file.stem().string() + ".mtl";
+  if (auto written = write_whole_file(set.add(mtl), mtl_text(png.filename().string())); !written)
+    return written;
+  return write_whole_file(set.add(name), obj_text(textured, mtl));
+}
+
+}  // namespace
+
 Result<void> write_textured(const fs::path& file, const TexturedSurface& textured) {
   const std::string extension = file.extension().string();
-  if (extension != ".obj" && extension != ".ply")
-    return fail(file.string() + ": a painted surface is written as .obj or .ply");
+  if (!is_writable(extension))
+    return fail(file.string() + ": a painted surface is written as .obj, .ply or .glb");
   if (textured.corners_uv.size() != textured.surface.mesh.triangles.size())
     return fail(file.string() + ": is not written: " + std::to_string(textured.corners_uv.size()) +
                 " triangles have places in the picture, " +
                 std::to_string(textured.surface.mesh.triangles.size()) + " are needed");
-  const std::string stem = file.stem().string(), png = stem + ".png", mtl = stem + ".mtl";
   FileSet set(file);
   if (auto begun = set.begin(); !begun) return begun;
-  if (auto written =
-          write_png(set.add(png), textured.width_texels, textured.height_texels, over_grey(textured.rgba));
+  const std::string name = file.stem().string() + ".png";
+  const fs::path png = extension == ".glb" ? set.scratch(name) : set.add(name);
+  if (auto written = write_png(png, textured.width_texels, textured.height_texels, over_grey(textured.rgba));
       !written)
     return written;
-  if (extension == ".obj")
-    if (auto written = write_whole_file(set.add(mtl), mtl_text(png)); !written) return written;
-  const std::string surface = extension == ".obj" ? obj_text(textured, mtl) : ply_bytes(textured, png);
-  if (auto written = write_whole_file(set.add(file.filename().string()), surface); !written) return written;
+  if (auto written = write_set(set, file, textured, png); !written) return written;
   return set.publish();
 }
 

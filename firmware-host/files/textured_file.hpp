@@ -1,4 +1,4 @@
-// A painted surface for other programs: OBJ with its MTL and PNG, or PLY with its PNG.
+// A painted surface for other programs: OBJ with its MTL and PNG, PLY with its PNG, or GLB.
 #pragma once
 
 #include <array>
@@ -23,9 +23,9 @@ struct TexturedSurface {
 };
 
 /// `file` ends in .obj (NAME.mtl and NAME.png come beside it) or .ply (NAME.png; the places are the faces'
-/// `texcoord`, the picture is named in a TextureFile comment). The picture is opaque: what has no paint is
-/// grey. Millimetres, LPS, said in a comment with the surface's identity. All files are made ready before the
-/// first appears under its name; on an error none does.
+/// `texcoord`, the picture is named in a TextureFile comment) or .glb (one file, see textured_glb.hpp). The
+/// picture is opaque: what has no paint is grey. Millimetres, LPS, said in a comment with the surface's
+/// identity. All files are made ready before the first appears under its name; on an error none does.
 Result<void> write_textured(const std::filesystem::path& file, const TexturedSurface& textured);
 
 }  // namespace orcart

@@ -106,9 +106,41 @@ TEST(TexturedFile, LeavesNothingWhereItFails) {
 }
 
 TEST(TexturedFile, RefusesOtherFormats) {
-  const auto written = write_textured("/tmp/painted.glb", Painted().textured());
+  const auto written = write_textured("/tmp/painted.stl", Painted().textured());
   ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().message, "/tmp/painted.glb: a painted surface is written as .obj or .ply");
+  EXPECT_EQ(written.error().message, "/tmp/painted.stl: a painted surface is written as .obj, .ply or .glb");
+}
+
+std::uint32_t word_at(const std::string& bytes, std::size_t at) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data() + at, 4);
+  return word;
+}
+
+TEST(TexturedFile, AGlbHoldsAllInTwoChunksOfWholeWords) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_textured(folder / "painted.glb", Painted().textured()));
+  EXPECT_EQ(folder.count(), 1U);
+  const std::string glb = text_of(folder / "painted.glb");
+  ASSERT_EQ(glb.substr(0, 4), "glTF");
+  EXPECT_EQ(word_at(glb, 4), 2U);
+  EXPECT_EQ(word_at(glb, 8), glb.size());
+  const std::uint32_t json = word_at(glb, 12);
+  EXPECT_EQ(json % 4, 0U);
+  EXPECT_EQ(glb.substr(16, 4), "JSON");
+  const std::uint32_t binary = word_at(glb, 20 + json);
+  EXPECT_EQ(20 + json + 8 + binary, glb.size());
+  EXPECT_EQ(binary % 4, 0U);
+  EXPECT_EQ(glb.substr(24 + json, 4), std::string("BIN\0", 4));
+  // Two vertices have one place in the picture, two have one each in both triangles: (0,0) and (0.5,1) twice,
+  // the same.
+  const std::string text = glb.substr(20, json);
+  EXPECT_NE(text.find(R"("count":4,"type":"VEC3","min":)"), std::string::npos) << text;
+  EXPECT_NE(text.find(R"("count":6,"type":"SCALAR")"), std::string::npos) << text;
+  EXPECT_NE(text.find(R"("series":"ch2.nii.gz")"), std::string::npos) << text;
+  std::array<float, 2> third_place{};
+  std::memcpy(third_place.data(), glb.data() + 28 + json + 4 * 12 + 4 * 12 + 2 * 8, 8);
+  EXPECT_EQ(third_place, (std::array<float, 2>{0.5F, 0})) << "glTF counts from the picture's top";
 }
 
 }  // namespace
