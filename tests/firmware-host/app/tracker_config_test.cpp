@@ -10,12 +10,14 @@
 namespace orcart::testing {
 namespace {
 
-const std::filesystem::path kHere = demo_cart().parent_path() / "cart.toml";
+std::filesystem::path here() {
+  return demo_cart().parent_path() / "cart.toml";
+}
 constexpr std::string_view kTools =
     "scope_rom = \"../tools/scope.rom\"\nreference_rom = \"../tools/reference.rom\"\n";
 
 Result<TrackerConfig> read(const std::string& keys) {
-  auto reader = TomlReader::parse("[tracker]\n" + keys + std::string(kTools), kHere);
+  auto reader = TomlReader::parse("[tracker]\n" + keys + std::string(kTools), here());
   if (!reader) return tl::unexpected(reader.error());
   TrackerConfig tracker;
   read_tracker((*reader)->section("tracker"), tracker);
@@ -85,7 +87,7 @@ TEST(TrackerConfig, TakesAToolByItsPortInsteadOfItsDefinition) {
   auto reader = TomlReader::parse(
       "[tracker]\nkind = \"usb\"\npoll = \"bx\"\nbeeps = 2\nscope_port = 2\nscope_channel = "
       "1\nreference_port = 3\n",
-      kHere);
+      here());
   ASSERT_TRUE(reader);
   TrackerConfig tracker;
   read_tracker((*reader)->section("tracker"), tracker);
