@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Hostile{"empty.ply", "", "is empty"},
         Hostile{"garbage.ply", "\x01\x02garbage", "PLY file is expected"},
-        Hostile{"kind.vtk", "x", ".ply, .stl and .obj are accepted"},
+        Hostile{"kind.vtk", "x", ".ply, .stl, .obj and .mz3 are accepted"},
         Hostile{"header.ply", "ply\nformat ascii 1.0\n", "has no end_header"},
         Hostile{"format.ply", "ply\nformat ebcdic 1.0\nend_header\n", "ply:2: \"format ebcdic 1.0\""},
         Hostile{"nothing.ply", ply_header("ascii", "", "0", "0"), "0 vertices and 0 triangles"},
