@@ -2,8 +2,10 @@
 #include "tools/probe/device_probe.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "board/linux/kms/drm_card.hpp"
 #include "board/linux/pedal/keyboard_pedal.hpp"
@@ -30,15 +32,33 @@ Finding lacking(std::string area, const std::string& sentence) {
           .next = split == std::string::npos ? "see the kernel's log (dmesg)" : sentence.substr(split + 2)};
 }
 
+bool is_known(std::uint32_t wire_code) {
+  return std::ranges::any_of(
+      std::array{WireFormat::yuyv, WireFormat::uyvy, WireFormat::nv12, WireFormat::mjpeg},
+      [&](WireFormat known) { return static_cast<std::uint32_t>(known) == wire_code; });
+}
+
 Finding camera_on(const OpenDevice& device, const std::string& path) {
   const CameraOffer offer = offer_of(device);
   Finding finding{.area = "camera", .name = path + " " + offer.card + " (driver " + driver_of(device) + ")"};
   std::map<std::string, std::string> by_format;
+  std::set<std::string> others;
   for (const CameraMode& mode : offer.modes) {
-    std::string& modes = by_format[name_of_code(mode.wire_code)];
-    modes += (modes.empty() ? "" : "; ") + text_of(mode);
+    const std::string format = name_of_code(mode.wire_code);
+    if (!is_known(mode.wire_code)) {
+      others.insert(format);
+      continue;
+    }
+    std::string& modes = by_format[format];
+    if (!modes.empty()) modes += "; ";
+    modes += text_of(mode);
   }
-  for (const auto& [format, modes] : by_format) finding.details.push_back(format + ": " + modes);
+  for (const auto& [format, modes] : by_format) {
+    finding.details.push_back(format);
+    finding.details.back().append(": ").append(modes);
+  }
+  if (!others.empty())
+    finding.details.push_back("and " + std::to_string(others.size()) + " formats that orcart does not read");
   std::string controls;
   for (const CameraControl& control : controls_of(device))
     controls += (controls.empty() ? "" : ", ") + control.name + "=" + std::to_string(control.value) + " (" +

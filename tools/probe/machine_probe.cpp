@@ -38,7 +38,7 @@ constexpr std::array<UsbId, 7> kTrackers{{{"0403", "da70", "NDI Host USB Convert
 bool may_open(const std::filesystem::path& usb_device) {
   const std::string bus = first_line(usb_device / "busnum"), number = first_line(usb_device / "devnum");
   const auto three = [](const std::string& n) {
-    return std::string(n.size() < 3 ? 3 - n.size() : 0, '0') + n;
+    return std::string(n.size() < 3 ? 3 - n.size() : 0, '0').append(n);
   };
   const std::string node = "/dev/bus/usb/" + three(bus) + "/" + three(number);
   return ::access(node.c_str(), R_OK | W_OK) == 0 || !std::filesystem::exists(node);

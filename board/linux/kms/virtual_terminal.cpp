@@ -5,6 +5,7 @@
 #include <linux/kd.h>
 #include <linux/vt.h>
 
+#include <bit>
 #include <cerrno>
 #include <charconv>
 #include <cstdint>
@@ -15,7 +16,7 @@ namespace orcart {
 namespace {
 
 void* number(int value) {
-  return reinterpret_cast<void*>(static_cast<std::intptr_t>(value));  // these requests take no pointer
+  return std::bit_cast<void*>(static_cast<std::intptr_t>(value));  // these requests take no pointer
 }
 
 int number_of(const std::string& tty) {

@@ -27,10 +27,11 @@ class MjpegDecoderTest : public ::testing::Test {
   int channel(int x, int y, int c) const {
     return std::to_integer<int>(pixels[static_cast<std::size_t>((y * 64 + x) * 4 + c)]);
   }
+  static int ramp(int at, int size) { return at * 255 / size; }
   void expect_ramp() const {
     for (const auto& [x, y] : {std::pair{0, 0}, {63, 0}, {31, 24}, {5, 47}, {63, 47}}) {
-      EXPECT_NEAR(channel(x, y, 0), x * 255 / 64, 12) << x << "," << y;
-      EXPECT_NEAR(channel(x, y, 1), y * 255 / 48, 12) << x << "," << y;
+      EXPECT_NEAR(channel(x, y, 0), ramp(x, 64), 12) << x << "," << y;
+      EXPECT_NEAR(channel(x, y, 1), ramp(y, 48), 12) << x << "," << y;
       EXPECT_NEAR(channel(x, y, 2), 64, 16) << x << "," << y;
       EXPECT_EQ(channel(x, y, 3), 255);
     }

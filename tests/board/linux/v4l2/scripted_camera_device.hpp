@@ -5,19 +5,25 @@
 #include <linux/videodev2.h>
 #include <poll.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <deque>
 #include <map>
 #include <memory>
 #include <set>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "board/linux/device_calls.hpp"
 #include "realtime/kernel/clock.hpp"
 
 namespace orcart::testing {
+
+/// A name as the kernel writes it, into a field that is longer.
+template <std::size_t N>
+void put_name(std::uint8_t (&field)[N], std::string_view name) {
+  std::copy_n(name.begin(), std::min(name.size(), N - 1), field);
+}
 
 class ScriptedCameraDevice final : public DeviceCalls {
  public:
@@ -125,7 +131,7 @@ inline int ScriptedCameraDevice::enumerate(unsigned long request, void* argument
             .maximum = 5000,
             .step = 1,
             .default_value = 157};
-    std::strcpy(reinterpret_cast<char*>(item.name), "Exposure Time, Absolute");
+    put_name(item.name, "Exposure Time, Absolute");
   }
   return 0;
 }
@@ -193,8 +199,8 @@ inline int ScriptedCameraDevice::control(int, unsigned long request, void* argum
   switch (request) {
     case VIDIOC_QUERYCAP: {
       auto& capability = *static_cast<v4l2_capability*>(argument);
-      std::strcpy(reinterpret_cast<char*>(capability.card), "Scripted camera");
-      std::strcpy(reinterpret_cast<char*>(capability.driver), "scripted");
+      put_name(capability.card, "Scripted camera");
+      put_name(capability.driver, "scripted");
       capability.capabilities = capabilities;
       return 0;
     }
