@@ -68,8 +68,11 @@ std::vector<Finding> probe_trackers(const std::filesystem::path& root) {
     if (known == kTrackers.end()) continue;
     Finding finding{.area = "tracker", .name = std::string(known->name)};
     const std::string serial = first_line(device / "serial");
-    finding.details.push_back("USB " + vendor + ":" + product + ", port = \"" + device.filename().string() +
-                              "\"" + (serial.empty() ? "" : ", serial = \"" + serial + "\""));
+    std::string where = "USB ";
+    where.append(vendor).append(":").append(product).append(", port = \"");
+    where.append(device.filename().string()).append("\"");
+    if (!serial.empty()) where.append(", serial = \"").append(serial).append("\"");
+    finding.details.push_back(where);
     if (!may_open(device)) {
       finding.lack = finding.name + " at USB port " + device.filename().string() + " may not be opened";
       finding.next = "install board/cart's udev rules, or join the group plugdev";
