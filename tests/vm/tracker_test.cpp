@@ -58,9 +58,7 @@ TEST_F(TrackerOnABridge, AnswersSixtyPollsASecondForAMinute) {
             << after.skipped_polls - before.skipped_polls << " polls skipped, "
             << microseconds(thread_time() - cpu_before) / static_cast<double>(polls)
             << " us of processor time a poll\n";
-  // On a quiet machine none is missed; one that is held up for 33 ms misses one, and that is no fault of
-  // ours.
-  EXPECT_GE(replies * 100, polls * 99);
+  EXPECT_GE(replies + 1, polls) << "only the last poll may still be under way";
   EXPECT_GE(polls, 3000u);
   EXPECT_EQ(after.crc_bad, before.crc_bad);
   EXPECT_EQ(driver->health(), TrackerHealth::live) << driver->trouble_sentence();
