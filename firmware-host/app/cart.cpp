@@ -84,14 +84,18 @@ Result<void> Cart::State::build_painting() {
   if (!made_mapper) return tl::unexpected(made_mapper.error());
   mapper = std::make_unique<Mapper>(std::move(*made_mapper));
   for (std::size_t i = 0; i < kPatchSlots; ++i) patches.emplace_back(patch_capacity({}));
-  auto made_painter =
-      Painter::create(patient.surface, patient.layout, patient.scope, {.seen_from = config.seen_from});
+  auto made_painter = Painter::create(patient.surface, patient.layout, patient.scope,
+                                      {.seen_from = config.seen_from,
+                                       .policy = config.policy,
+                                       .highlights = config.highlights,
+                                       .light = config.light});
   if (!made_painter) return tl::unexpected(made_painter.error());
   painter = std::make_unique<Painter>(std::move(*made_painter));
   auto made_screen = Screen::create(patient.surface, patient.layout, patient.scope,
                                     {.width_px = config.panel.width_px,
                                      .height_px = config.panel.height_px,
-                                     .seen_from = config.seen_from});
+                                     .seen_from = config.seen_from,
+                                     .colour_by = config.colour_by});
   if (!made_screen) return tl::unexpected(made_screen.error());
   screen = std::make_unique<Screen>(std::move(*made_screen));
   return {};

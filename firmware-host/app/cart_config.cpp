@@ -20,6 +20,21 @@ void read_files(TomlReader& reader, CartConfig& config) {
   config.registration = registration.path("file");
 }
 
+void read_painting(const TomlSection& section, CartConfig& config) {
+  config.mode = section.choice_of<TextureMode>(
+      "mode", {{"perspective", TextureMode::perspective}, {"paper", TextureMode::paper}},
+      TextureMode::perspective);
+  config.policy = section.choice_of<PaintPolicy>(
+      "policy", {{"newest", PaintPolicy::newest}, {"best", PaintPolicy::best}}, config.policy);
+  config.highlights = section.choice_of<Highlights>(
+      "highlights", {{"yield", Highlights::yield}, {"keep", Highlights::keep}}, config.highlights);
+  config.light = section.choice_of<LightModel>("light",
+                                               {{"as_seen", LightModel::as_seen},
+                                                {"fixed_exposure", LightModel::fixed_exposure},
+                                                {"auto_exposure", LightModel::auto_exposure}},
+                                               config.light);
+}
+
 void read_simulation(const TomlSection& section, SimulationConfig& simulation) {
   simulation.seed = static_cast<std::uint64_t>(section.integer("seed", {.min = 0, .fallback = 1}));
   simulation.duration_s = section.number("duration_s", {.min = 2, .max = 3600, .fallback = 30});
@@ -46,10 +61,7 @@ Result<CartConfig> read_cart(const std::filesystem::path& file) {
   const TomlSection sync = reader.section("sync");
   config.tracker_against_video = from_seconds(
       1e-3 * sync.number("tracker_against_video_ms", {.min = -500, .max = 500, .fallback = 0.0}));
-  const TomlSection painting = reader.section("painting");
-  config.mode = painting.choice_of<TextureMode>(
-      "mode", {{"perspective", TextureMode::perspective}, {"paper", TextureMode::paper}},
-      TextureMode::perspective);
+  read_painting(reader.section("painting"), config);
   const TomlSection view = reader.section("view");
   config.view_from = view.numbers("from", 3, config.view_from);
   config.view_up = view.numbers("up", 3, config.view_up);
@@ -60,6 +72,13 @@ Result<CartConfig> read_cart(const std::filesystem::path& file) {
         "is \"simulated\", which presses by the script of a simulated procedure; with "
         "tracker and camera real, gpio, keyboard or none is accepted");
   }
+  config.colour_by = view.choice_of<ColourBy>("colour_by",
+                                              {{"picture", ColourBy::picture},
+                                               {"capture", ColourBy::capture},
+                                               {"angle", ColourBy::angle},
+                                               {"resolution", ColourBy::resolution},
+                                               {"error", ColourBy::error}},
+                                              ColourBy::picture);
   if (auto finished = reader.finish(); !finished) return tl::unexpected(finished.error());
   return config;
 }

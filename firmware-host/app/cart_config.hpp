@@ -12,6 +12,8 @@
 #include "realtime/base/result.hpp"
 #include "realtime/geometry/triangle_mesh.hpp"
 #include "realtime/mapper/cutout_patch.hpp"
+#include "render/atlas/colouring.hpp"
+#include "render/atlas/paint_settings.hpp"
 
 namespace orcart {
 
@@ -31,6 +33,10 @@ struct CartConfig {
   SeenFrom seen_from = SeenFrom::outside;
   double texel_mm = 0.2;
   TextureMode mode = TextureMode::perspective;
+  PaintPolicy policy = PaintPolicy::newest;
+  Highlights highlights = Highlights::yield;
+  LightModel light = LightModel::auto_exposure;
+  ColourBy colour_by = ColourBy::picture;  ///< what the panel shows
   TrackerConfig tracker;
   CameraConfig camera;
   PedalConfig pedal;

@@ -26,7 +26,11 @@ Result<OfflinePainter> OfflinePainter::create(const Surface& surface, const Scop
   self.mapper_ = std::make_unique<Mapper>(std::move(*mapper));
   self.patch_ = CutoutPatch(patch_capacity(limits));
 
-  auto painter = Painter::create(surface, *self.layout_, scope, {.seen_from = options.seen_from});
+  auto painter = Painter::create(surface, *self.layout_, scope,
+                                 {.seen_from = options.seen_from,
+                                  .policy = options.policy,
+                                  .highlights = options.highlights,
+                                  .light = options.light});
   if (!painter) return tl::unexpected(painter.error());
   self.painter_ = std::make_unique<Painter>(std::move(*painter));
   return self;

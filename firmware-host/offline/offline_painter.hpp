@@ -14,6 +14,9 @@ struct OfflinePaintOptions {
   SeenFrom seen_from = SeenFrom::outside;
   TextureMode mode = TextureMode::perspective;
   double texel_mm = 0.2;
+  PaintPolicy policy = PaintPolicy::newest;
+  Highlights highlights = Highlights::keep;
+  LightModel light = LightModel::as_seen;
 };
 
 /// What one view gave.
@@ -28,8 +31,8 @@ class OfflinePainter {
   static Result<OfflinePainter> create(const Surface& surface, const ScopeModel& scope,
                                        const OfflinePaintOptions& options);
 
-  /// Paints one picture of the scope's size; newest wins. A view in paper mode whose centre ray misses is
-  /// refused.
+  /// Paints one picture of the scope's size, by the options' policy. A view in paper mode whose centre ray
+  /// misses is refused.
   Result<ViewPainted> paint(const ImageDescriptor& image, const Pose<M, C>& X_MC);
 
   const AtlasLayout& layout() const { return *layout_; }

@@ -91,7 +91,7 @@ void CoverageCounter::count(std::span<const std::uint32_t> tiles) noexcept {
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, owner_);
   glActiveTexture(GL_TEXTURE1);
-  glBindTexture(GL_TEXTURE_2D, atlas_.texture);
+  glBindTexture(GL_TEXTURE_2D, atlas_.colour.texture);
   glBindVertexArray(vertex_array_.id());
   glBindBuffer(GL_ARRAY_BUFFER, instances_.id());
   glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(tiles.size() * 4 * sizeof(std::uint16_t)),

@@ -3,6 +3,7 @@
 
 #include "realtime/mapper/cutout_patch.hpp"
 #include "realtime/optics/scope_model.hpp"
+#include "render/atlas/paint_settings.hpp"
 #include "render/atlas/scope_depth.hpp"
 #include "render/atlas/surface_textures.hpp"
 #include "render/gles/picture_texture.hpp"
@@ -13,9 +14,7 @@ namespace orcart {
 struct PaintConstants {
   TextureMode mode = TextureMode::perspective;
   int atlas_size_texels = 0;
-  float facing = 1;  ///< +1 seen from outside, -1 from inside
-  double max_obliquity_rad = 1.3963;
-  bool even_out_light = false;
+  double texel_mm = 0.2;
   DepthPinhole pinhole;
 };
 
@@ -25,11 +24,16 @@ struct PaintView {
   PaperProjection paper;
   GLuint depth_texture = 0;
   GLuint mask_texture = 0;
+  GLuint before_texture = 0;  ///< the records before this view
+  std::uint32_t unit = 0;
+  ViewError error;
+  float mean_light = 1;  ///< at which a brightness stays as it is
 };
 
 class PaintProgram {
  public:
-  static Result<PaintProgram> create(const ScopeModel& scope, const PaintConstants& constants);
+  static Result<PaintProgram> create(const ScopeModel& scope, const PainterSettings& settings,
+                                     const PaintConstants& constants);
 
   /// Makes the program current with all its textures and uniforms. Allocates nothing.
   void use(const PaintView& view, const SurfaceTextures& surface,
@@ -37,11 +41,13 @@ class PaintProgram {
 
  private:
   PaintProgram() = default;
-  void set_constants(const ScopeModel& scope, const PaintConstants& constants);
+  void set_constants(const ScopeModel& scope, const PainterSettings& settings,
+                     const PaintConstants& constants);
 
   gles::Program program_;
   GLint rotation_ = -1, translation_ = -1, tip_ = -1, view_ = -1, up_ = -1, side_ = -1, paper_size_ = -1,
-        half_width_slope_ = -1;
+        half_width_slope_ = -1, capture_ = -1, view_error_ = -1, light_ = -1;
+  Eigen::Vector2f fall_off_ = Eigen::Vector2f::Zero();  ///< reference mm, power of the vignetting's cosine
   gles::PictureTexture::Uniforms picture_{};
 };
 

@@ -11,6 +11,7 @@
 #include "render/atlas/scope_depth.hpp"
 #include "render/atlas/surface_textures.hpp"
 #include "render/atlas/undo_store.hpp"
+#include "render/atlas/view_light.hpp"
 #include "render/gles/picture_texture.hpp"
 
 namespace orcart {
@@ -38,9 +39,10 @@ struct Painter::State {
   std::vector<UndoStore> undo;                ///< exactly one
   std::vector<CoverageCounter> coverage;      ///< exactly one
   std::vector<gles::PictureTexture> picture;  ///< exactly one
-  gles::Texture atlas, mask;
-  gles::Framebuffer framebuffer;
-  std::vector<PaintProgram> programs;  ///< by TextureMode
+  gles::Texture atlas, records, mask;
+  gles::Framebuffer atlas_framebuffer, record_framebuffer;  ///< each alone
+  gles::Framebuffer both;                                   ///< what is painted into
+  std::vector<PaintProgram> programs;                       ///< by TextureMode
   gles::VertexArray vertex_array;
   gles::Buffer rects;
 
@@ -57,11 +59,17 @@ struct Painter::State {
   Eigen::AlignedBox3f view_box;  ///< of the view's triangles
   PaintView view;
   TextureMode mode = TextureMode::perspective;
-  std::uint32_t unit = 0;
+  ViewLight light;
 
-  KeptAtlas kept() const { return {atlas.id(), framebuffer.id(), layout->width_texels}; }
+  KeptAtlas kept() const {
+    return {.colour = {atlas.id(), atlas_framebuffer.id()},
+            .record = {records.id(), record_framebuffer.id()},
+            .size_texels = layout->width_texels};
+  }
   Result<void> make_programs();
   Result<void> make_atlas(const Surface& surface);
+  Result<void> make_targets();
+  void wipe() noexcept;
   void collect(const CutoutPatch& patch) noexcept;
   void collect_cells(std::uint32_t triangle) noexcept;
   void collect_tile(std::uint32_t cell) noexcept;
@@ -71,28 +79,54 @@ struct Painter::State {
 
 Result<void> Painter::State::make_programs() {
   for (const TextureMode each : {TextureMode::perspective, TextureMode::paper}) {
-    auto made = PaintProgram::create(scope, {.mode = each,
-                                             .atlas_size_texels = layout->width_texels,
-                                             .facing = settings.seen_from == SeenFrom::outside ? 1.0f : -1.0f,
-                                             .max_obliquity_rad = settings.max_obliquity_rad,
-                                             .even_out_light = settings.even_out_light,
-                                             .pinhole = depth[0].pinhole()});
+    auto made = PaintProgram::create(scope, settings,
+                                     {.mode = each,
+                                      .atlas_size_texels = layout->width_texels,
+                                      .texel_mm = layout->texel_mm,
+                                      .pinhole = depth[0].pinhole()});
     if (!made) return tl::unexpected(made.error());
     programs.push_back(std::move(*made));
   }
   view.depth_texture = depth[0].texture();
   view.mask_texture = mask.id();
+  view.before_texture = undo[0].before_texture();
+  view.error = {.position_mm = static_cast<float>(scope.residual_mm),
+                .pixels = static_cast<float>(scope.residual_px)};
   return {};
+}
+
+Result<void> Painter::State::make_targets() {
+  const int width = layout->width_texels, height = layout->height_texels;
+  atlas = gles::make_texture({GL_RGBA8, width, height, GL_LINEAR});
+  records = gles::make_texture({GL_RGBA16UI, width, height});
+  auto of_atlas = gles::make_framebuffer(atlas.id()), of_records = gles::make_framebuffer(records.id());
+  if (!of_atlas) return tl::unexpected(of_atlas.error());
+  if (!of_records) return tl::unexpected(of_records.error());
+  atlas_framebuffer = std::move(*of_atlas);
+  record_framebuffer = std::move(*of_records);
+  auto of_both = gles::make_framebuffer(atlas.id());
+  if (!of_both) return tl::unexpected(of_both.error());
+  both = std::move(*of_both);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, records.id(), 0);
+  constexpr std::array<GLenum, 2> kTargets{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+  glDrawBuffers(kTargets.size(), kTargets.data());
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    return fail("the driver cannot draw colours and records side by side");
+  wipe();
+  return {};
+}
+
+void Painter::State::wipe() noexcept {
+  constexpr std::array<GLfloat, 4> kBare{};
+  constexpr std::array<GLuint, 4> kNothing{};
+  glBindFramebuffer(GL_FRAMEBUFFER, both.id());
+  glClearBufferfv(GL_COLOR, 0, kBare.data());
+  glClearBufferuiv(GL_COLOR, 1, kNothing.data());
 }
 
 Result<void> Painter::State::make_atlas(const Surface& from) {
   surface = make_surface_textures(from.mesh, *layout);
-  atlas = gles::make_texture({GL_RGBA8, layout->width_texels, layout->height_texels, GL_LINEAR});
-  auto made = gles::make_framebuffer(atlas.id());
-  if (!made) return tl::unexpected(made.error());
-  framebuffer = std::move(*made);
-  glClearColor(0, 0, 0, 0);
-  glClear(GL_COLOR_BUFFER_BIT);
+  if (auto made = make_targets(); !made) return made;
   const std::size_t words = (from.mesh.triangles.size() + 31) / 32;
   const int rows = static_cast<int>((words + kMaskRow - 1) / kMaskRow);
   mask_words.assign(static_cast<std::size_t>(rows) * kMaskRow, 0);
@@ -221,8 +255,10 @@ void Painter::State::collect(const CutoutPatch& patch) noexcept {
     view.X_CM = patch.X_MC.inverse();
     mode = patch.mode;
     view.paper = patch.paper;
+    light.begin(patch.X_MC, scope);
     if (mode == TextureMode::paper) std::fill(mask_words.begin(), mask_words.end(), 0u);
   }
+  if (settings.light == LightModel::auto_exposure) light.add(*mesh, patch.triangles);
   for (const std::uint32_t triangle : patch.triangles) {
     if (mode == TextureMode::paper) mask_words[triangle >> 5] |= 1u << (triangle & 31);
     collect_cells(triangle);
@@ -234,9 +270,10 @@ PaintReport Painter::paint(const CutoutPatch& patch, std::uint32_t unit) noexcep
   State& s = *state_;
   if (s.picture[0].empty() || (patch.mode == TextureMode::paper && !patch.paper.valid)) return {};
   s.collect(patch);
-  s.unit = unit;
+  s.view.unit = unit;
   if (patch.mode == TextureMode::perspective) s.depth[0].draw(patch, s.view.X_CM);
   if (!patch.last_part) return {};
+  s.view.mean_light = s.settings.light == LightModel::auto_exposure ? s.light.mean() : 1;
   if (s.mode == TextureMode::paper) {
     glBindTexture(GL_TEXTURE_2D, s.mask.id());
     glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kMaskRow, static_cast<GLsizei>(s.mask_words.size() / kMaskRow),
@@ -267,11 +304,12 @@ PaintReport Painter::State::paint_some() noexcept {
   report.carried = painted < cells.size();
   if (!report.painted) return report;
   note_change(view_box);
-  undo[0].keep(unit, tiles);
+  undo[0].keep(view.unit, tiles);
   coverage[0].touch(tiles);
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
+  undo[0].show_before(tiles);
+  glBindFramebuffer(GL_FRAMEBUFFER, both.id());
   glViewport(0, 0, layout->width_texels, layout->height_texels);
-  glEnable(GL_BLEND);
+  glEnable(GL_BLEND);  // colours alone: records are integers
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   programs[static_cast<std::size_t>(mode)].use(view, surface, picture[0]);
   glBindVertexArray(vertex_array.id());
@@ -300,9 +338,7 @@ bool Painter::redo() noexcept {
 
 void Painter::clear() noexcept {
   state_->note_change(kEverything);
-  glBindFramebuffer(GL_FRAMEBUFFER, state_->framebuffer.id());
-  glClearColor(0, 0, 0, 0);
-  glClear(GL_COLOR_BUFFER_BIT);
+  state_->wipe();
   state_->undo[0].forget_all();
   state_->coverage[0].touch_all();
 }
@@ -316,7 +352,7 @@ AtlasPicture Painter::read_back() const {
                        .height_texels = state_->layout->height_texels};
   picture.rgba.resize(4 * static_cast<std::size_t>(picture.width_texels) *
                       static_cast<std::size_t>(picture.height_texels));
-  glBindFramebuffer(GL_FRAMEBUFFER, state_->framebuffer.id());
+  glBindFramebuffer(GL_FRAMEBUFFER, state_->atlas_framebuffer.id());
   glReadPixels(0, 0, picture.width_texels, picture.height_texels, GL_RGBA, GL_UNSIGNED_BYTE,
                picture.rgba.data());
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
@@ -328,6 +364,21 @@ AtlasPicture Painter::read_back() const {
     }
   }
   return picture;
+}
+
+AtlasRecords Painter::read_records() const {
+  AtlasRecords records{.width_texels = state_->layout->width_texels,
+                       .height_texels = state_->layout->height_texels};
+  records.texels.resize(static_cast<std::size_t>(records.width_texels) *
+                        static_cast<std::size_t>(records.height_texels));
+  glBindFramebuffer(GL_FRAMEBUFFER, state_->record_framebuffer.id());
+  glReadPixels(0, 0, records.width_texels, records.height_texels, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT,
+               records.texels.data());
+  return records;
+}
+
+void Painter::set_view_error(const ViewError& error) noexcept {
+  state_->view.error = error;
 }
 
 std::uint64_t Painter::changes() const noexcept {
@@ -342,6 +393,9 @@ Eigen::AlignedBox3f Painter::touched_by(std::uint64_t change) const noexcept {
 
 std::uint32_t Painter::atlas_texture() const noexcept {
   return state_->atlas.id();
+}
+std::uint32_t Painter::record_texture() const noexcept {
+  return state_->records.id();
 }
 const gles::PictureTexture& Painter::picture() const noexcept {
   return state_->picture[0];

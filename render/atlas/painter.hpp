@@ -14,16 +14,10 @@
 #include "realtime/mapper/cutout_patch.hpp"
 #include "realtime/optics/scope_model.hpp"
 #include "render/atlas/atlas_layout.hpp"
+#include "render/atlas/paint_settings.hpp"
+#include "render/atlas/texel_record.hpp"
 
 namespace orcart {
-
-struct PainterSettings {
-  SeenFrom seen_from = SeenFrom::outside;
-  int undo_units = 16;                            ///< how many units can be taken back
-  std::uint32_t max_texels_per_step = 1'500'000;  ///< at least a cell of 16 x 16
-  double max_obliquity_rad = 1.3963;
-  bool even_out_light = false;  ///< compensate ScopeModel::fall_off
-};
 
 /// Read back from the GPU: straight RGBA, row 0 first as in AtlasLayout; alpha 0 where nothing was painted.
 /// Of a view: opaque.
@@ -44,7 +38,7 @@ class PictureTexture;
 }
 
 /// All calls from the thread whose GL context is current. After create() our own code allocates nothing but
-/// in read_back(); the driver may.
+/// in read_back() and read_records(); the driver may.
 class Painter {
  public:
   static Result<Painter> create(const Surface& surface, const AtlasLayout& layout, const ScopeModel& scope,
@@ -56,8 +50,9 @@ class Painter {
   /// Takes a picture over to the GPU; it is what paint() paints and what the inset shows. False where its
   /// size is not the scope's or its format is unknown: the last picture stays.
   bool upload(const ImageDescriptor& image) noexcept;
-  /// Paints the uploaded picture onto the patch's triangles, newest wins. Pictures with the same unit are
-  /// undone together. Of a view in parts, only the last part paints: by then all that hides is known.
+  /// Paints the uploaded picture onto the patch's triangles, by the policy of the settings. Pictures with the
+  /// same unit are undone together. Of a view in parts, only the last part paints: by then all that hides is
+  /// known.
   PaintReport paint(const CutoutPatch& patch, std::uint32_t unit) noexcept;
   /// Goes on where the texel cap stopped the paint() before, with the picture that is uploaded now.
   PaintReport paint_more() noexcept;
@@ -70,6 +65,9 @@ class Painter {
   /// few times a second.
   double coverage() noexcept;
   AtlasPicture read_back() const;
+  AtlasRecords read_records() const;
+  /// What the next views' poses are worth; at first what the passport's residuals say.
+  void set_view_error(const ViewError& error) noexcept;
 
   /// How often the atlas was changed so far, and the box of M (mm) that holds what the n-th change touched (1
   /// is the first). The newest 16 are remembered; older ones, and steps back and forth, may have touched
@@ -78,6 +76,7 @@ class Painter {
   Eigen::AlignedBox3f touched_by(std::uint64_t change) const noexcept;
 
   std::uint32_t atlas_texture() const noexcept;          ///< GL name, RGBA8, colour premultiplied by alpha
+  std::uint32_t record_texture() const noexcept;         ///< GL name, RGBA16UI, a TexelRecord each
   const gles::PictureTexture& picture() const noexcept;  ///< the newest upload
 
  private:

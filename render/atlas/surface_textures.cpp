@@ -2,6 +2,7 @@
 #include "render/atlas/surface_textures.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -30,6 +31,21 @@ gles::Texture owner_texture(const AtlasLayout& layout) {
   return texture;
 }
 
+/// The point of a triangle nearest to one in its plane (Ericson 2005, section 5.1.5, by the edges alone).
+Eigen::Vector3f nearest_on(const std::array<Eigen::Vector3f, 3>& corners, const Eigen::Vector3f& p) {
+  Eigen::Vector3f nearest = corners[0];
+  float least = INFINITY;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3f &a = corners[i], edge = corners[(i + 1) % 3] - a;
+    const float along = std::clamp((p - a).dot(edge) / std::max(edge.squaredNorm(), 1e-20F), 0.0F, 1.0F);
+    const Eigen::Vector3f on_edge = a + along * edge;
+    if ((on_edge - p).squaredNorm() >= least) continue;
+    least = (on_edge - p).squaredNorm();
+    nearest = on_edge;
+  }
+  return nearest;
+}
+
 gles::Texture point_texture(const TriangleMesh& mesh, const AtlasLayout& layout) {
   std::vector<float> points(layout.owners.size() * 4, kNowhere_mm);
   for (std::size_t i = 0; i < layout.owners.size(); ++i) {
@@ -38,7 +54,8 @@ gles::Texture point_texture(const TriangleMesh& mesh, const AtlasLayout& layout)
     const auto& corners = mesh.triangles[owner.triangle];
     const Eigen::Vector3f a = mesh.vertices_mm[corners[0]], ab = mesh.vertices_mm[corners[1]] - a,
                           ac = mesh.vertices_mm[corners[2]] - a;
-    const Eigen::Vector3f p = a + owner.b1 * ab + owner.b2 * ac;
+    Eigen::Vector3f p = a + owner.b1 * ab + owner.b2 * ac;
+    if (layout.inside[i] == 0) p = nearest_on({a, a + ab, a + ac}, p);
     std::copy_n(p.data(), 3, &points[4 * i]);
     points[4 * i + 3] = pack_normal(ab.cross(ac).normalized());
   }

@@ -11,7 +11,8 @@ struct SurfaceTextures {
   gles::Texture
       owner;  ///< R32UI, atlas size: triangle, bit 31 where the centre lies inside it; 0x7FFFFFFF nothing
   gles::Texture points;  ///< RGBA32F, atlas size: the point behind the texel, M, mm, 1e9 where there is none;
-                         ///< the normal in w, see pack_normal
+                         ///< in a gutter the nearest of its triangle, which is seen or hidden as that is, so
+                         ///< that no seam stays bare; the normal in w, see pack_normal
   gles::Texture triangles;  ///< RGBA32UI, row-wrapped: the three vertices
   gles::Texture vertices;   ///< RGBA32F, row-wrapped: positions in M, mm
 };

@@ -1,13 +1,17 @@
 // One instanced draw for any number of tiles.
 #include "render/atlas/tile_copier.hpp"
 
+#include <string>
+
 #include "render/shaders/shaders.hpp"
 
 namespace orcart {
 
-Result<TileCopier> TileCopier::create(std::size_t most) {
+Result<TileCopier> TileCopier::create(TexelKind kind, std::size_t most) {
   TileCopier self;
-  auto program = gles::make_program("copy_tiles", shaders::copy_tiles_vert, shaders::copy_tiles_frag);
+  const std::string fragment = (kind == TexelKind::record ? "#define RECORDS 1\n" : "#define RECORDS 0\n") +
+                               std::string(shaders::copy_tiles_frag);
+  auto program = gles::make_program("copy_tiles", shaders::copy_tiles_vert, fragment);
   if (!program) return tl::unexpected(program.error());
   self.program_ = std::move(*program);
   glUseProgram(self.program_.id());

@@ -16,10 +16,16 @@ struct TileMove {
   std::uint16_t from_x = 0, from_y = 0, to_x = 0, to_y = 0;
 };
 
+/// What a picture's texels are.
+enum class TexelKind : std::uint8_t {
+  colour,  ///< RGBA8
+  record,  ///< RGBA16UI
+};
+
 class TileCopier {
  public:
   /// `most`: moves of one call.
-  static Result<TileCopier> create(std::size_t most);
+  static Result<TileCopier> create(TexelKind kind, std::size_t most);
   struct Target {
     GLuint framebuffer = 0;
     int size_texels = 0;  ///< square

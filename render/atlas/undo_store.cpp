@@ -2,34 +2,47 @@
 #include "render/atlas/undo_store.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace orcart {
 
+Result<void> UndoStore::make_layer(TexelKind kind, const KeptLayer& kept, Layer& layer,
+                                   std::size_t most_moves) {
+  const GLenum format = kind == TexelKind::record ? GL_RGBA16UI : GL_RGBA8;
+  layer.kept = kept;
+  layer.store = gles::make_texture({format, store_size_texels_, store_size_texels_});
+  layer.scratch = gles::make_texture({format, atlas_.size_texels, atlas_.size_texels});
+  auto store = gles::make_framebuffer(layer.store.id());
+  if (!store) return tl::unexpected(store.error());
+  auto scratch = gles::make_framebuffer(layer.scratch.id());
+  if (!scratch) return tl::unexpected(scratch.error());
+  layer.store_framebuffer = std::move(*store);
+  layer.scratch_framebuffer = std::move(*scratch);
+  auto copier = TileCopier::create(kind, most_moves);
+  if (!copier) return tl::unexpected(copier.error());
+  layer.copier.push_back(std::move(*copier));
+  return {};
+}
+
 Result<UndoStore> UndoStore::create(const KeptAtlas& atlas, int units) {
-  constexpr int kStoreTexels = 2048;
   UndoStore self;
   self.atlas_ = atlas;
   self.tiles_per_row_ = static_cast<std::uint32_t>(atlas.size_texels / kTileTexels);
-  self.slots_per_row_ = kStoreTexels / kTileTexels;
+  const std::uint64_t tiles = static_cast<std::uint64_t>(self.tiles_per_row_) * self.tiles_per_row_;
+  const std::uint64_t wished = std::min(kMostSlots, tiles * static_cast<std::uint64_t>(units));
+  self.slots_per_row_ = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(wished))));
   self.slots_ = static_cast<std::uint64_t>(self.slots_per_row_) * self.slots_per_row_;
-  self.store_ = gles::make_texture({GL_RGBA8, kStoreTexels, kStoreTexels});
-  self.scratch_ = gles::make_texture({GL_RGBA8, atlas.size_texels, atlas.size_texels});
-  auto store = gles::make_framebuffer(self.store_.id());
-  if (!store) return tl::unexpected(store.error());
-  auto scratch = gles::make_framebuffer(self.scratch_.id());
-  if (!scratch) return tl::unexpected(scratch.error());
-  self.store_framebuffer_ = std::move(*store);
-  self.scratch_framebuffer_ = std::move(*scratch);
-  const std::size_t tiles = static_cast<std::size_t>(self.tiles_per_row_) * self.tiles_per_row_;
-  auto copier = TileCopier::create(std::max<std::size_t>(tiles, self.slots_));
-  if (!copier) return tl::unexpected(copier.error());
-  self.copier_.push_back(std::move(*copier));
+  self.store_size_texels_ = static_cast<int>(self.slots_per_row_) * kTileTexels;
+  const std::size_t most = std::max<std::size_t>(tiles, self.slots_);
+  if (auto made = self.make_layer(TexelKind::colour, atlas.colour, self.layers_[0], most); !made)
+    return tl::unexpected(made.error());
+  if (auto made = self.make_layer(TexelKind::record, atlas.record, self.layers_[1], most); !made)
+    return tl::unexpected(made.error());
   self.units_.resize(static_cast<std::size_t>(units));
   self.tile_of_slot_.resize(self.slots_);
   self.kept_in_unit_.assign(tiles, 0);
-  self.moves_.reserve(std::max<std::size_t>(tiles, self.slots_));
-  self.back_.reserve(self.moves_.capacity());
-  self.touched_.reserve(self.moves_.capacity());
+  for (auto* moves : {&self.moves_, &self.out_, &self.back_}) moves->reserve(most);
+  self.touched_.reserve(most);
   return self;
 }
 
@@ -70,39 +83,54 @@ void UndoStore::keep(std::uint32_t unit, std::span<const std::uint32_t> tiles) n
     tile_of_slot_[slot % slots_] = tile;
     moves_.push_back(move_to_store(tile, slot));
   }
-  copier_[0].copy(atlas_.texture, {store_framebuffer_.id(), static_cast<int>(slots_per_row_) * kTileTexels},
-                  moves_);
+  for (Layer& layer : layers_)
+    layer.copier[0].copy(layer.kept.texture, {layer.store_framebuffer.id(), store_size_texels_}, moves_);
+}
+
+void UndoStore::show_before(std::span<const std::uint32_t> tiles) noexcept {
+  moves_.clear();
+  for (const std::uint32_t tile : tiles) {
+    const TileMove move = move_to_store(tile, 0);
+    moves_.push_back({move.from_x, move.from_y, move.from_x, move.from_y});
+  }
+  Layer& records = layers_[1];
+  records.copier[0].copy(records.kept.texture, {records.scratch_framebuffer.id(), atlas_.size_texels},
+                         moves_);
 }
 
 std::span<const std::uint32_t> UndoStore::undo() noexcept {
   if (newest_ == oldest_) return {};
-  return swap(unit_at(--newest_));
+  return swap_unit(unit_at(--newest_));
 }
 
 std::span<const std::uint32_t> UndoStore::redo() noexcept {
   if (newest_ == end_) return {};
-  return swap(unit_at(newest_++));
+  return swap_unit(unit_at(newest_++));
 }
 
-// Atlas to scratch, store to atlas, scratch to store.
-std::span<const std::uint32_t> UndoStore::swap(const Unit& unit) noexcept {
+std::span<const std::uint32_t> UndoStore::swap_unit(const Unit& unit) noexcept {
   touched_.clear();
   moves_.clear();
+  out_.clear();
   back_.clear();
   for (std::uint64_t i = 0; i < unit.slot_count; ++i) {
     const std::uint32_t tile = tile_of_slot_[(unit.first_slot + i) % slots_];
     const TileMove move = move_to_store(tile, unit.first_slot + i);
     touched_.push_back(tile);
     moves_.push_back({move.from_x, move.from_y, move.from_x, move.from_y});
-    back_.push_back({move.to_x, move.to_y, move.from_x, move.from_y});
+    out_.push_back({move.to_x, move.to_y, move.from_x, move.from_y});
+    back_.push_back(move);
   }
-  copier_[0].copy(atlas_.texture, {scratch_framebuffer_.id(), atlas_.size_texels}, moves_);
-  copier_[0].copy(store_.id(), {atlas_.framebuffer, atlas_.size_texels}, back_);
-  for (TileMove& move : back_) move = {move.to_x, move.to_y, move.from_x, move.from_y};
-  copier_[0].copy(scratch_.id(), {store_framebuffer_.id(), static_cast<int>(slots_per_row_) * kTileTexels},
-                  back_);
+  for (Layer& layer : layers_) swap(layer);
   mark_kept();
   return touched_;
+}
+
+// Atlas to scratch, store to atlas, scratch to store.
+void UndoStore::swap(Layer& layer) noexcept {
+  layer.copier[0].copy(layer.kept.texture, {layer.scratch_framebuffer.id(), atlas_.size_texels}, moves_);
+  layer.copier[0].copy(layer.store.id(), {layer.kept.framebuffer, atlas_.size_texels}, out_);
+  layer.copier[0].copy(layer.scratch.id(), {layer.store_framebuffer.id(), store_size_texels_}, back_);
 }
 
 /// After a step back or forth: the unit that is now the newest has kept its tiles already, should it go on.

@@ -64,6 +64,7 @@ struct TextureShape {
   GLenum internal_format = GL_RGBA8;
   int width = 1, height = 1;
   GLint filter = GL_NEAREST;
+  int levels = 1;  ///< more than one: the nearest level is looked up
 };
 Texture make_texture(const TextureShape& shape);
 

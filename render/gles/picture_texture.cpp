@@ -2,57 +2,65 @@
 // pairs.
 #include "render/gles/picture_texture.hpp"
 
+#include <algorithm>
+
 namespace orcart::gles {
 namespace {
-
-struct Upload {
-  const Texture& texture;
-  int width, height;
-  GLenum format;
-  int bytes_per_texel;
-};
-
-void upload_plane(const ImagePlane& plane, const Upload& to) noexcept {
-  glBindTexture(GL_TEXTURE_2D, to.texture.id());
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, static_cast<GLint>(plane.stride_bytes) / to.bytes_per_texel);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, to.width, to.height, to.format, GL_UNSIGNED_BYTE,
-                  plane.data + plane.offset_bytes);
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-}
-
+constexpr int kMostLevels = 4;  // below the picture itself
 }  // namespace
+
+PictureTexture::Plane::Plane(GLenum internal_format, GLenum upload_format, int plane_width, int plane_height,
+                             int channel_count)
+    : width(plane_width),
+      height(plane_height),
+      channels(channel_count),
+      format(upload_format),
+      pyramid(width, height, channels, exact_halvings(width, height, kMostLevels)),
+      texture(make_texture({internal_format, width, height, GL_LINEAR, 1 + pyramid.levels()})) {}
+
+void PictureTexture::Plane::upload(const ImagePlane& from) noexcept {
+  const auto* pixels = reinterpret_cast<const std::uint8_t*>(from.data + from.offset_bytes);
+  glBindTexture(GL_TEXTURE_2D, texture.id());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, static_cast<GLint>(from.stride_bytes) / channels);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, format, GL_UNSIGNED_BYTE, pixels);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  pyramid.build({pixels, from.stride_bytes, width, height});
+  for (int level = 1; level <= pyramid.levels(); ++level)
+    glTexSubImage2D(GL_TEXTURE_2D, level, 0, 0, width >> level, height >> level, format, GL_UNSIGNED_BYTE,
+                    pyramid.level(level));
+}
 
 PictureTexture::PictureTexture(int width_px, int height_px)
     : width_px_(width_px),
       height_px_(height_px),
-      rgba_(make_texture({GL_RGBA8, width_px, height_px, GL_LINEAR})),
-      y_(make_texture({GL_R8, width_px, height_px, GL_LINEAR})),
-      y_with_chroma_(make_texture({GL_RG8, width_px, height_px, GL_LINEAR})),
-      cbcr_(make_texture({GL_RG8, (width_px + 1) / 2, (height_px + 1) / 2, GL_LINEAR})),
-      packed_(make_texture({GL_RGBA8, (width_px + 1) / 2, height_px, GL_LINEAR})) {}
+      rgba_(GL_RGBA8, GL_RGBA, width_px, height_px, 4),
+      y_(GL_R8, GL_RED, width_px, height_px, 1),
+      y_with_chroma_(GL_RG8, GL_RG, width_px, height_px, 2),
+      cbcr_(GL_RG8, GL_RG, std::max(width_px / 2, 1), std::max(height_px / 2, 1), 2),
+      packed_(GL_RGBA8, GL_RGBA, std::max(width_px / 2, 1), height_px, 4) {}
 
 bool PictureTexture::upload(const ImageDescriptor& image) noexcept {
   if (image.width_px != width_px_ || image.height_px != height_px_ || image.planes[0].data == nullptr)
     return false;
   switch (image.format) {
     case PixelFormat::rgba8888:
-      upload_plane(image.planes[0], {rgba_, width_px_, height_px_, GL_RGBA, 4});
+      rgba_.upload(image.planes[0]);
       format_ = 0;
       return true;
     case PixelFormat::nv12:
-      upload_plane(image.planes[0], {y_, width_px_, height_px_, GL_RED, 1});
-      upload_plane(image.planes[1], {cbcr_, width_px_ / 2, height_px_ / 2, GL_RG, 2});
+      y_.upload(image.planes[0]);
+      cbcr_.upload(image.planes[1]);
       format_ = 1;
       return true;
     case PixelFormat::yuyv:
     case PixelFormat::uyvy:
-      upload_plane(image.planes[0], {y_with_chroma_, width_px_, height_px_, GL_RG, 2});
-      upload_plane(image.planes[0], {packed_, width_px_ / 2, height_px_, GL_RGBA, 4});
+      y_with_chroma_.upload(image.planes[0]);
+      packed_.upload(image.planes[0]);
       format_ = image.format == PixelFormat::yuyv ? 2 : 3;
       return true;
     case PixelFormat::gray8:
-      upload_plane(image.planes[0], {y_, width_px_, height_px_, GL_RED, 1});
+      y_.upload(image.planes[0]);
       format_ = 4;
       return true;
     case PixelFormat::xrgb8888:
@@ -68,17 +76,17 @@ PictureTexture::Uniforms PictureTexture::uniforms_of(const Program& program) {
 }
 
 void PictureTexture::bind(const Uniforms& uniforms, int unit) const noexcept {
-  const Texture* luma = &rgba_;
-  const Texture* chroma = &cbcr_;
+  const Plane* luma = &rgba_;
+  const Plane* chroma = &cbcr_;
   if (format_ == 1 || format_ == 4) luma = &y_;
   if (format_ == 2 || format_ == 3) {
     luma = &y_with_chroma_;
     chroma = &packed_;
   }
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_2D, luma->id());
+  glBindTexture(GL_TEXTURE_2D, luma->texture.id());
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit) + 1);
-  glBindTexture(GL_TEXTURE_2D, chroma->id());
+  glBindTexture(GL_TEXTURE_2D, chroma->texture.id());
   glUniform1i(uniforms.format, format_);
   glUniform1i(uniforms.luma, unit);
   glUniform1i(uniforms.chroma, unit + 1);

@@ -1,9 +1,10 @@
-// The newest camera picture on the GPU, as raw planes; shaders convert it where they look
-// (shaders/picture.glsl).
+// The newest camera picture on the GPU, as raw planes in several finenesses; shaders convert it where they
+// look (shaders/picture.glsl).
 #pragma once
 
 #include "realtime/base/image.hpp"
 #include "render/gles/objects.hpp"
+#include "render/gles/picture_pyramid.hpp"
 
 namespace orcart::gles {
 
@@ -24,9 +25,20 @@ class PictureTexture {
   void bind(const Uniforms& uniforms, int unit) const noexcept;
 
  private:
+  /// A texture of one plane, all its levels.
+  struct Plane {
+    Plane(GLenum internal_format, GLenum upload_format, int width, int height, int channels);
+    void upload(const ImagePlane& from) noexcept;
+
+    int width, height, channels;
+    GLenum format;
+    PicturePyramid pyramid;
+    Texture texture;
+  };
+
   int width_px_, height_px_;
   int format_ = -1;  ///< as u_picture_format; -1 before the first upload
-  Texture rgba_, y_, y_with_chroma_, cbcr_, packed_;
+  Plane rgba_, y_, y_with_chroma_, cbcr_, packed_;
 };
 
 }  // namespace orcart::gles

@@ -10,5 +10,5 @@ void main() {
   float cover = clamp((1.0 - r) * u_radius_px, 0.0, 1.0);
   if (cover <= 0.0) discard;
   vec2 pixel = u_circle.xy + v_place * vec2(1.0, 1.0 / u_aspect) * u_circle.z;
-  o_colour = vec4(picture_at(pixel), cover);
+  o_colour = vec4(picture_at(pixel, log2(max(u_circle.z / u_radius_px, 1.0))), cover);
 }

@@ -7,19 +7,6 @@ uniform vec3 u_translation_CM;
 uniform float u_facing;      // +1 seen from outside, -1 from inside
 uniform float u_cos_cone, u_far_mm, u_cos_obliquity;
 uniform float u_depth_tangent, u_depth_near, u_depth_far;
-uniform float u_pixel_rad;   // angle of one pixel at the centre
-#if EVEN_OUT_LIGHT
-uniform vec2 u_fall_off;     // reference mm, power of the cosine
-#endif
-out vec4 o_paint;
-
-vec3 unpacked_normal(float packed_normal) {
-  vec2 e = vec2(floor(packed_normal / 2048.0), mod(packed_normal, 2048.0)) / 2047.0 * 2.0 - 1.0;
-  vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
-  float fold = max(-n.z, 0.0);
-  n.xy += vec2(n.x >= 0.0 ? -fold : fold, n.y >= 0.0 ? -fold : fold);
-  return normalize(n);
-}
 
 // What the scope sees along the line of sight of one depth texel, mm in front of the texel's own plane and mm behind it.
 // In front counts from no farther than `farthest_own`, behind from the plane itself: a steep plane is no edge. Depths are
@@ -61,11 +48,8 @@ void main() {
   vec2 pixel = lens_pixel(p);
   float weight = mask_weight(pixel);
   if (weight <= 0.0 || hidden(p, normal)) discard;
-  vec3 colour = picture_at(pixel);
-#if EVEN_OUT_LIGHT
-  float nearness = u_fall_off.x / distance_mm;
-  float light = nearness * nearness * pow(p.z / distance_mm, u_fall_off.y);
-  colour = min(colour / max(pow(light, 1.0 / 2.2), 0.25), vec3(1.0));
-#endif
-  o_paint = vec4(colour, weight);
+  float cos_angle = -dot(normal, p) / distance_mm;
+  vec3 colour = picture_at(pixel, picture_level(distance_mm, cos_angle));
+  weight *= clamp((cos_angle - u_cos_obliquity) * 10.0, 0.004, 1.0);  // no jagged edge from triangle to triangle
+  put(evened_out(colour, p, distance_mm, cos_angle), weight, core_weight(pixel), record_of(distance_mm, cos_angle));
 }

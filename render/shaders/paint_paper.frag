@@ -8,7 +8,8 @@ uniform usampler2D u_mask;       // one bit per triangle of the cutout
 uniform vec3 u_tip, u_view, u_up, u_side;   // M
 uniform vec2 u_paper_size;                  // S1, T1
 uniform float u_half_width_slope;           // of the rectified picture, a square about the optical axis
-out vec4 o_paint;
+uniform mat3 u_rotation_CM;
+uniform vec3 u_translation_CM;
 
 vec3 vertex(uint i) {
   uint width = uint(textureSize(u_vertices, 0).x);
@@ -43,12 +44,17 @@ void main() {
   uint width = uint(textureSize(u_triangles, 0).x);
   uvec3 corners = texelFetch(u_triangles, ivec2(int(owner % width), int(owner / width)), 0).xyz;
   vec3 a = vertex(corners.x), b = vertex(corners.y), c = vertex(corners.z);
-  vec2 weights = weights_of(texelFetch(u_points, texel, 0).xyz, a, b, c);
+  vec4 point = texelFetch(u_points, texel, 0);
+  vec2 weights = weights_of(point.xyz, a, b, c);
   vec2 sa = paper_st(a);
   vec2 st = sa + weights.x * (paper_st(b) - sa) + weights.y * (paper_st(c) - sa);
   vec2 slope = vec2(2.0 * st.x - 1.0, 1.0 - 2.0 * st.y) * u_half_width_slope;
   vec2 pixel = lens_pixel(vec3(slope, 1.0));
   float weight = mask_weight(pixel);
   if (weight <= 0.0 || any(greaterThan(abs(st - 0.5), vec2(0.5)))) discard;
-  o_paint = vec4(picture_at(pixel), weight);
+  vec3 p = u_rotation_CM * point.xyz + u_translation_CM;
+  float distance_mm = length(p);
+  float cos_angle = clamp(abs(dot(u_rotation_CM * unpacked_normal(point.w), p)) / distance_mm, 0.02, 1.0);
+  vec3 colour = picture_at(pixel, picture_level(distance_mm, cos_angle));
+  put(evened_out(colour, p, distance_mm, cos_angle), weight, 1.0, record_of(distance_mm, cos_angle));
 }

@@ -17,6 +17,9 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   uvec4 seen = texelFetch(u_seen, at, 0);
   vec4 paint = texture(u_atlas, vec2(seen.rg) / (16.0 * vec2(textureSize(u_atlas, 0))));
+#if COLOUR_BY
+  paint.rgb = known_colour(vec2(seen.rg) / 16.0) * paint.a;
+#endif
   vec2 light = vec2(seen.ba) / 65535.0;
   vec3 tissue = vec3(0.66, 0.59, 0.54) * light.x * (1.0 - paint.a) + paint.rgb * light.y;
   vec3 colour = mix(u_ground, tissue, cover_at(at, seen.b));

@@ -93,7 +93,9 @@ Result<Screen> Screen::create(const Surface& surface, const AtlasLayout& layout,
   auto view = SurfaceView::create(surface, layout,
                                   {.width_px = static_cast<int>(state->layout.view.width),
                                    .height_px = static_cast<int>(state->layout.view.height),
-                                   .seen_from = settings.seen_from});
+                                   .seen_from = settings.seen_from,
+                                   .colour_by = settings.colour_by,
+                                   .most_triangles = settings.most_triangles});
   if (!view) return tl::unexpected(view.error());
   state->view.push_back(std::move(*view));
   auto canvas = HudCanvas::create(
@@ -114,9 +116,10 @@ Result<Screen> Screen::create(const Surface& surface, const AtlasLayout& layout,
 // Draws everything once, for software drivers translate a shader when something is first drawn with it.
 void Screen::State::warm_up() {
   const gles::Texture unpainted = gles::make_texture({GL_RGBA8, 1, 1, GL_LINEAR});
+  const gles::Texture unknown = gles::make_texture({GL_RGBA16UI, 1, 1});
   Eye eye;
   eye.position_mm = {0, 0, 1};
-  view[0].draw(eye, unpainted.id(), {});
+  view[0].draw(eye, {unpainted.id(), unknown.id()}, {});
   std::vector<std::byte> black(packed_bytes(PixelFormat::rgba8888, scope.width_px, scope.height_px));
   gles::PictureTexture live(scope.width_px, scope.height_px);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
@@ -148,7 +151,7 @@ void Screen::State::draw_inset(const gles::PictureTexture& live) noexcept {
 }
 
 void Screen::State::redraw(const ScreenState& state, const Painter& painter) noexcept {
-  if (drawn && drawn_version == state.paint_version && drawn_eye == state.eye) return;
+  if (drawn && drawn_version == state.paint_version && drawn_eye == state.eye && view[0].settled()) return;
   constexpr std::uint64_t kRemembered = 16;
   Eigen::AlignedBox3f changed;
   const std::uint64_t now = painter.changes();
@@ -156,7 +159,7 @@ void Screen::State::redraw(const ScreenState& state, const Painter& painter) noe
        ++i) {
     changed.extend(painter.touched_by(i));
   }
-  view[0].draw(state.eye, painter.atlas_texture(), changed);
+  view[0].draw(state.eye, {painter.atlas_texture(), painter.record_texture()}, changed);
   drawn = true;
   drawn_version = state.paint_version;
   drawn_changes = now;
@@ -219,9 +222,13 @@ Result<AtlasPicture> picture_of_surface(const Surface& surface, const AtlasLayou
   constexpr int kFiner = 2;  // drawn larger and averaged, against jagged edges
   const int width = settings.width_px * kFiner, height = settings.height_px * kFiner;
   auto view = SurfaceView::create(surface, layout,
-                                  {.width_px = width, .height_px = height, .seen_from = settings.seen_from});
+                                  {.width_px = width,
+                                   .height_px = height,
+                                   .seen_from = settings.seen_from,
+                                   .colour_by = settings.colour_by,
+                                   .most_triangles = surface.mesh.triangles.size()});
   if (!view) return tl::unexpected(view.error());
-  view->draw(eye, painter.atlas_texture(), {});
+  view->draw(eye, {painter.atlas_texture(), painter.record_texture()}, {});
   std::vector<std::uint8_t> fine(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   glBindFramebuffer(GL_FRAMEBUFFER, view->framebuffer());
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, fine.data());

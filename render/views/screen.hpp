@@ -10,6 +10,7 @@
 #include "realtime/geometry/triangle_mesh.hpp"
 #include "realtime/optics/scope_model.hpp"
 #include "render/atlas/atlas_layout.hpp"
+#include "render/atlas/colouring.hpp"
 #include "render/atlas/painter.hpp"
 #include "render/hud/status.hpp"
 #include "render/views/eye.hpp"
@@ -20,6 +21,8 @@ struct ScreenSettings {
   int width_px = 1280, height_px = 800;
   SeenFrom seen_from =
       SeenFrom::outside;  ///< inside: the wall nearest to the eye is a glass shell, so that one looks in
+  ColourBy colour_by = ColourBy::picture;
+  std::size_t most_triangles = 50'000;  ///< see SurfaceViewSettings
 };
 
 /// What changes from picture to picture.

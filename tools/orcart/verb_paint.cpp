@@ -1,6 +1,7 @@
 // orcart paint: recorded pictures with their poses, painted onto a surface, from files to files.
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -17,6 +18,7 @@
 #include "firmware-host/files/textured_file.hpp"
 #include "firmware-host/files/views_file.hpp"
 #include "firmware-host/offline/offline_painter.hpp"
+#include "render/atlas/colouring.hpp"
 #include "tools/orcart/verbs.hpp"
 
 namespace orcart {
@@ -28,13 +30,14 @@ constexpr const char* kExample =
     "painted.obj\n\n"
     "views.csv has a line for each picture, the newest last (it wins): image,m00,m01,...,m23 with the "
     "camera's pose\n"
-    "in the surface's space as a row-major 3x4 matrix, mm (LPS). Writes NAME.obj, NAME.mtl and NAME.png, or "
+    "in the surface's space as a row-major 3x4 matrix, mm (LPS). Writes NAME.obj, NAME.mtl and NAME.png, "
     "NAME.ply\n"
-    "and NAME.png.";
+    "and NAME.png, or NAME.glb alone.";
 
 struct Arguments {
   std::string surface, scope, views, out;
   OfflinePaintOptions options;
+  ColourBy colour_by = ColourBy::picture;
   std::optional<Space> space;
   bool json = false;
 };
@@ -44,6 +47,7 @@ struct Summary {
   double coverage = 0;  ///< share of the surface's texels that carry paint, 0..1
   double texel_mm = 0;
   int atlas_size_texels = 0;
+  double footprint_mm = 0, angle_deg = 0, error_mm = 0;  ///< medians over the painted texels
   double seconds = 0;
   std::string renderer;
 };
@@ -147,6 +151,27 @@ std::vector<std::array<Eigen::Vector2f, 3>> picture_places(const AtlasLayout& la
   return places;
 }
 
+double median_of(std::vector<std::uint16_t> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void add_medians(const AtlasLayout& layout, const AtlasRecords& records, Summary& summary) {
+  std::vector<std::uint16_t> footprints, angles, errors;
+  for (std::size_t i = 0; i < layout.inside.size(); ++i) {
+    const TexelRecord& record = records.texels[i];
+    if (layout.inside[i] == 0 || record.capture == 0) continue;
+    footprints.push_back(record.footprint_um);
+    angles.push_back(record.angle_cdeg);
+    errors.push_back(record.error_um);
+  }
+  summary.footprint_mm = median_of(std::move(footprints)) / 1000;
+  summary.angle_deg = median_of(std::move(angles)) / 100;
+  summary.error_mm = median_of(std::move(errors)) / 1000;
+}
+
 double share_painted(const AtlasLayout& layout, const AtlasPicture& picture) {
   std::size_t inside = 0, painted = 0;
   for (std::size_t i = 0; i < layout.inside.size(); ++i) {
@@ -171,20 +196,24 @@ Result<Summary> paint(const Arguments& arguments) {
   if (coverage == 0)
     return fail(arguments.out + " is not written: none of the " + std::to_string(inputs->views.size()) +
                 " views painted anything");
+  const AtlasRecords records = painter->painter().read_records();
+  const AtlasPicture shown = coloured(picture, records, arguments.colour_by);
   const auto places = picture_places(layout);
   const auto written = write_textured(arguments.out, {.surface = inputs->surface,
                                                       .corners_uv = places,
                                                       .width_texels = picture.width_texels,
                                                       .height_texels = picture.height_texels,
-                                                      .rgba = picture.rgba});
+                                                      .rgba = shown.rgba});
   if (!written) return tl::unexpected(written.error());
-  return Summary{.views = inputs->views.size(),
-                 .views_without_paint = *without_paint,
-                 .coverage = coverage,
-                 .texel_mm = layout.texel_mm,
-                 .atlas_size_texels = layout.width_texels,
-                 .seconds = seconds_since(start),
-                 .renderer = painter->context().renderer_name()};
+  Summary summary{.views = inputs->views.size(),
+                  .views_without_paint = *without_paint,
+                  .coverage = coverage,
+                  .texel_mm = layout.texel_mm,
+                  .atlas_size_texels = layout.width_texels,
+                  .seconds = seconds_since(start),
+                  .renderer = painter->context().renderer_name()};
+  add_medians(layout, records, summary);
+  return summary;
 }
 
 void print(const Summary& summary, const Arguments& arguments) {
@@ -193,6 +222,13 @@ void print(const Summary& summary, const Arguments& arguments) {
       summary.views - summary.views_without_paint, summary.seconds, summary.renderer.c_str(),
       100 * summary.coverage, summary.texel_mm, summary.atlas_size_texels, summary.atlas_size_texels,
       arguments.out.c_str());
+  std::printf(
+      "a pixel covers %.3g mm of the surface, seen %.0f degrees from its normal; predicted error %.3g mm "
+      "(medians)\n",
+      summary.footprint_mm, summary.angle_deg, summary.error_mm);
+  if (const double end = end_of_ramp(arguments.colour_by); end > 0)
+    std::printf("colours: yellow is 0, violet %g %s and beyond\n", end,
+                arguments.colour_by == ColourBy::angle ? "degrees" : "mm");
 }
 
 std::string json_text(const std::string& words) {
@@ -207,10 +243,11 @@ std::string json_text(const std::string& words) {
 void print_json(const Summary& summary, const Arguments& arguments) {
   std::printf(
       "{\"views\": %zu, \"views_without_paint\": %zu, \"coverage\": %.6f, \"texel_mm\": %.6g, "
-      "\"atlas_size_texels\": %d, \"seconds\": %.3f, \"renderer\": %s, \"out\": %s}\n",
+      "\"atlas_size_texels\": %d, \"footprint_mm_median\": %.4f, \"angle_deg_median\": %.2f, "
+      "\"predicted_error_mm_median\": %.4f, \"seconds\": %.3f, \"renderer\": %s, \"out\": %s}\n",
       summary.views, summary.views_without_paint, summary.coverage, summary.texel_mm,
-      summary.atlas_size_texels, summary.seconds, json_text(summary.renderer).c_str(),
-      json_text(arguments.out).c_str());
+      summary.atlas_size_texels, summary.footprint_mm, summary.angle_deg, summary.error_mm, summary.seconds,
+      json_text(summary.renderer).c_str(), json_text(arguments.out).c_str());
 }
 
 int run(const Arguments& arguments) {
@@ -224,7 +261,36 @@ int run(const Arguments& arguments) {
 }
 
 std::string writable_kind(const std::string& out) {
-  return out.ends_with(".obj") || out.ends_with(".ply") ? "" : "a name that ends in .obj or .ply is accepted";
+  for (const char* kind : {".obj", ".ply", ".glb"})
+    if (out.ends_with(kind)) return "";
+  return "a name that ends in .obj, .ply or .glb is accepted";
+}
+
+void add_painting_options(CLI::App& verb, Arguments& arguments) {
+  verb.add_option("--policy", arguments.options.policy,
+                  "newest (default): the newest picture wins; best: the one in which a pixel covers least")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, PaintPolicy>{{"newest", PaintPolicy::newest}, {"best", PaintPolicy::best}}));
+  verb.add_option("--highlights", arguments.options.highlights,
+                  "keep (default), or yield: mirrored light gives way to any other picture")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Highlights>{{"keep", Highlights::keep}, {"yield", Highlights::yield}}));
+  verb.add_option(
+          "--light", arguments.options.light,
+          "as_seen (default); the light's fall evened out: fixed_exposure, or auto_exposure where the "
+          "camera sets its gain")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, LightModel>{{"as_seen", LightModel::as_seen},
+                                            {"fixed_exposure", LightModel::fixed_exposure},
+                                            {"auto_exposure", LightModel::auto_exposure}}));
+  verb.add_option("--colour-by", arguments.colour_by,
+                  "picture (default), or what is known of each texel: capture, angle, resolution, error")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, ColourBy>{{"picture", ColourBy::picture},
+                                                                  {"capture", ColourBy::capture},
+                                                                  {"angle", ColourBy::angle},
+                                                                  {"resolution", ColourBy::resolution},
+                                                                  {"error", ColourBy::error}}));
 }
 
 }  // namespace
@@ -240,6 +306,7 @@ void add_paint(CLI::App& app, int& exit_code) {
                    "perspective (default): through the calibrated lens; paper: as Dey et al. 2000")
       ->transform(CLI::CheckedTransformer(std::map<std::string, TextureMode>{
           {"perspective", TextureMode::perspective}, {"paper", TextureMode::paper}}));
+  add_painting_options(*verb, *arguments);
   verb->add_option("--seen-from", arguments->options.seen_from, "outside (default) or inside")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, SeenFrom>{{"outside", SeenFrom::outside}, {"inside", SeenFrom::inside}}));
@@ -252,9 +319,9 @@ void add_paint(CLI::App& app, int& exit_code) {
           "lps or ras: the space of a surface that states none")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Space>{{"lps", Space::lps}, {"ras", Space::ras}}, CLI::ignore_case));
-  verb->add_option("--out", arguments->out, "NAME.obj or NAME.ply")
+  verb->add_option("--out", arguments->out, "NAME.obj, NAME.ply or NAME.glb")
       ->required()
-      ->check(CLI::Validator(writable_kind, "NAME.obj|NAME.ply"));
+      ->check(CLI::Validator(writable_kind, "NAME.obj|NAME.ply|NAME.glb"));
   verb->add_flag("--json", arguments->json, "the summary as one JSON object");
   verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -39,6 +39,20 @@ TEST(CartConfig, ReadsTheShippedDemo) {
     EXPECT_TRUE(std::filesystem::exists(file)) << file;
 }
 
+TEST(CartConfig, ReadsHowPicturesArePutOntoTheSurface) {
+  const TemporaryFolder folder;
+  std::string text = replaced(text_of(demo_cart()), "policy = \"newest\"", "policy = \"best\"");
+  text = replaced(text, "highlights = \"yield\"", "highlights = \"keep\"");
+  text = replaced(text, "light = \"auto_exposure\"", "light = \"fixed_exposure\"");
+  const auto config =
+      read_cart(folder.write("cart.toml", replaced(text, "[view]\n", "[view]\ncolour_by = \"angle\"\n")));
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_EQ(config->policy, PaintPolicy::best);
+  EXPECT_EQ(config->highlights, Highlights::keep);
+  EXPECT_EQ(config->light, LightModel::fixed_exposure);
+  EXPECT_EQ(config->colour_by, ColourBy::angle);
+}
+
 TEST(CartConfig, TellsEveryErrorAtOnceWithItsLine) {
   std::string text = text_of(demo_cart());
   text = replaced(text, "rate_hz = 60", "rate_hz = 4000");

@@ -35,7 +35,7 @@ std::size_t for_each_painted(const Surface& surface, OfflinePainter& painter, Vi
 TEST(OfflinePainter, PaintsWhatTheLensSees) {
   const Surface plane = scenes::plane(20, 20, 10);
   const ScopeModel scope = scenes::scope();
-  auto painter = painter_on(plane);
+  auto painter = painter_on(plane, {.texel_mm = 0.055});  // finer than a pixel
   ASSERT_TRUE(painter) << painter.error().message;
   auto ramp = scenes::ramp(scope);
   const auto painted = painter->paint(ramp.descriptor(), {});

@@ -34,11 +34,12 @@ scenes::Rgba waves(const ScopeModel& scope) {
   return picture;
 }
 
-/// A plane before the scope, painted with one picture.
+/// A plane before the scope, painted with one picture; a texel is a little finer than a pixel, so that none
+/// are averaged.
 struct PaintedPlane {
   GlContext context{std::move(*GlContext::create())};
   Surface surface = scenes::plane(20, 26, 10);
-  AtlasLayout layout{std::move(*build_atlas(surface.mesh, {.texel_mm = 0.15}))};
+  AtlasLayout layout{std::move(*build_atlas(surface.mesh, {.texel_mm = 0.055}))};
   Painter painter;
 
   explicit PaintedPlane(const ScopeModel& scope)

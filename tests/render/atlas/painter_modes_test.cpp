@@ -71,7 +71,7 @@ double worst_error_px(const Stage& stage, const ScopeModel& scope, const PaperPr
 
 TEST(PainterInPaperMode, FollowsTheClosedFormOnAPlane) {
   const ScopeModel scope = scenes::scope();
-  Stage stage(scenes::plane(20, 24, 9), scope);
+  Stage stage(scenes::plane(20, 24, 9), scope, {}, 0.055);  // a texel is finer than a pixel
   auto ramp = scenes::ramp(scope);
   stage.painter->upload(ramp.descriptor());
   CutoutPatch patch = scenes::whole(stage.surface, {}, TextureMode::paper);
@@ -106,6 +106,15 @@ TEST(PainterInPaperMode, RefusesAViewWhoseCentreRayMissed) {
   EXPECT_FALSE(stage.painter->paint(scenes::whole(stage.surface, {}, TextureMode::paper), 1).painted);
 }
 
+/// How far inside the mask's circle a point of C is seen, pixels.
+double rim_px(const ScopeModel& scope, const Eigen::Vector3d& p_C_mm) {
+  const auto pixel = project(scope.lens, p_C_mm);
+  if (!pixel) return -1;
+  return scope.mask.radius_px -
+         std::hypot(pixel->x() - scope.mask.cx_px,
+                    (pixel->y() - scope.mask.cy_px) * scope.lens.fx_px / scope.lens.fy_px);
+}
+
 TEST(Painter, BlendsTheSoftRimOverOlderPaint) {
   const ScopeModel scope = scenes::scope();
   Stage stage(scenes::plane(20, 40, 10), scope);
@@ -118,13 +127,11 @@ TEST(Painter, BlendsTheSoftRimOverOlderPaint) {
   stage.painter->paint(scenes::whole(stage.surface, beside), 2);
   std::size_t mixed = 0;
   stage.for_each_texel([&](std::size_t, const Eigen::Vector3d& p, const std::uint8_t* rgba) {
-    const auto pixel = project(scope.lens, p - beside.translation_mm);
-    const double rim = pixel ? scope.mask.radius_px - std::hypot(pixel->x() - scope.mask.cx_px,
-                                                                 (pixel->y() - scope.mask.cy_px) *
-                                                                     scope.lens.fx_px / scope.lens.fy_px)
-                             : -1;
-    if (rgba[3] != 255 || rim < 0 || rim > scope.mask.soft_edge_px) return;
-    const double weight = rim / scope.mask.soft_edge_px;
+    const double rim = rim_px(scope, p - beside.translation_mm), old_rim = rim_px(scope, p);
+    if (old_rim < scope.mask.soft_edge_px) return;  // there was nothing to blend with, or little
+    const double core = std::clamp(rim / scope.mask.radius_px / 0.2, 0.0, 1.0);
+    if (rgba[3] != 255 || core == 0 || core == 1) return;
+    const double weight = std::min(1.0, rim / scope.mask.soft_edge_px) * core * core * (3 - 2 * core);
     EXPECT_NEAR(rgba[2], 200 * weight, 6);
     EXPECT_NEAR(rgba[0], 200 * (1 - weight), 6);
     ++mixed;
@@ -244,13 +251,14 @@ TEST(Painter, SaysWhichPartOfTheSurfaceAViewTouched) {
 TEST(Painter, EvensOutTheLightsFallWithDistance) {
   ScopeModel scope = scenes::scope();
   scope.fall_off = {.reference_mm = 20, .vignetting_cos_power = 0};
-  Stage stage(scenes::plane(28.2843, 12, 4), scope, {.even_out_light = true});  // half the light
+  Stage stage(scenes::plane(28.2843, 12, 4), scope, {.light = LightModel::fixed_exposure});  // half the light
   auto picture = scenes::flat(scope, 100, 100, 100);
   stage.painter->upload(picture.descriptor());
   stage.painter->paint(scenes::whole(stage.surface, {}), 1);
   const std::size_t painted =
       stage.for_each_texel([](std::size_t, const Eigen::Vector3d& p, const std::uint8_t* rgba) {
-        EXPECT_NEAR(rgba[0], 100 * std::pow(p.norm() / 20, 2 / 2.2), 1.5);
+        const double cosine = p.z() / p.norm(), light = std::pow(20 / p.norm(), 2) * (cosine + 0.2) / 1.2;
+        EXPECT_NEAR(rgba[0], 100 / std::pow(light, 1 / 2.2), 1.5);
       });
   EXPECT_GT(painted, 2'000u);
 }

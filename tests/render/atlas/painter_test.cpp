@@ -51,7 +51,7 @@ class PainterLens : public PainterTest, public ::testing::WithParamInterface<Len
 
 TEST_P(PainterLens, PutsEveryPixelWhereTheLensSaysItComesFrom) {
   const ScopeModel scope = scenes::scope(GetParam());
-  ASSERT_NO_FATAL_FAILURE(use(scenes::plane(20, 26, 10), scope));
+  ASSERT_NO_FATAL_FAILURE(use(scenes::plane(20, 26, 10), scope, 0.055));  // a texel is finer than a pixel
   auto ramp = scenes::ramp(scope);
   ASSERT_TRUE(painter_->upload(ramp.descriptor()));
   ASSERT_TRUE(painter_->paint(scenes::whole(surface_, {}), 1).painted);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 #include <sstream>
+#include <tuple>
 
 #include "firmware-host/files/picture_file.hpp"
 #include "firmware-host/files/scope_file.hpp"
@@ -191,9 +192,40 @@ TEST_F(Paint, ASurfaceThatStatesNoSpaceNeedsToBeTold) {
 }
 
 TEST_F(Paint, RefusesFormatsItCannotWrite) {
-  const Said said = run("painted.glb");
+  const Said said = run("painted.stl");
   EXPECT_NE(said.exit_code, 0);
-  EXPECT_NE(said.err.find(".obj or .ply"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find(".obj, .ply or .glb"), std::string::npos) << said.err;
+}
+
+TEST_F(Paint, WritesGlbAlone) {
+  const Said said = run("painted.glb");
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(folder_.count(), files_ + 1);
+}
+
+TEST_F(Paint, SaysHowFinelyAndHowStraightTheSurfaceWasSeen) {
+  const Said said =
+      run("painted.ply", {"--json", "--policy", "best", "--highlights", "yield", "--light", "auto_exposure"});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  // 20 to 24 mm away, seen up to 35 degrees from the normal; a pixel is 1 / 340 rad.
+  for (const auto& [key, least, most] :
+       {std::tuple{"footprint_mm_median", 20.0 / 340, 24.0 / 340 / 0.8}, {"angle_deg_median", 10.0, 30.0}}) {
+    const std::size_t at = said.out.find(key);
+    ASSERT_NE(at, std::string::npos) << said.out;
+    const double value = std::stod(said.out.substr(said.out.find(':', at) + 1));
+    EXPECT_GT(value, least) << key;
+    EXPECT_LT(value, most) << key;
+  }
+}
+
+TEST_F(Paint, ColoursByWhatIsKnownOfEachTexel) {
+  ASSERT_EQ(run("painted.ply").exit_code, 0);
+  const auto as_seen = read_picture(path("painted.png"));
+  for (const char* by : {"capture", "angle", "resolution", "error"}) {
+    const Said said = run("painted.ply", {"--colour-by", by});
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_NE(read_picture(path("painted.png"))->rgba, as_seen->rgba) << by;
+  }
 }
 
 }  // namespace
