@@ -102,6 +102,7 @@ void add_bench(CLI::App& app, int& exit_code) {
                    "of live: leave what is hidden to the painter");
   mapper->add_flag("--json", arguments->json, "one JSON object");
   mapper->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  add_bench_paint(*bench, exit_code);
 }
 
 }  // namespace orcart

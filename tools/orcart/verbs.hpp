@@ -9,6 +9,7 @@ namespace orcart {
 /// Each verb sets `exit_code` in its callback: 0 only on success. Errors are one sentence on stderr.
 void add_bench(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
+void add_bench_paint(CLI::App& bench_verb, int& exit_code);  ///< a part of `bench`
 void add_decode(CLI::App& app, int& exit_code);
 void add_emulate(CLI::App& app, int& exit_code);
 void add_evaluate(CLI::App& app, int& exit_code);
