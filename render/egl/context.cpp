@@ -88,6 +88,9 @@ Result<void> GlContext::make_current() noexcept {
 void GlContext::release_current() noexcept {
   eglMakeCurrent(state_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
+void GlContext::finish() const noexcept {
+  glFinish();
+}
 
 RenderClass GlContext::render_class() const noexcept {
   return state_->render_class;

@@ -26,6 +26,7 @@ class GlContext {
 
   Result<void> make_current() noexcept;
   void release_current() noexcept;
+  void finish() const noexcept;                       ///< waits until all that was asked for has been drawn
   RenderClass render_class() const noexcept;          ///< software for llvmpipe, softpipe and swrast
   const std::string& renderer_name() const noexcept;  ///< GL_RENDERER
   bool can_import_dma_buf() const noexcept;

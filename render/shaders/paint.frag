@@ -21,13 +21,11 @@ vec2 before_and_behind_mm(vec2 slope, vec3 plane, float farthest_own) {
   return vec2(1.0 / max(own, farthest_own) - 1.0 / seen, 1.0 / seen - 1.0 / own);
 }
 
-// Hidden when something nearer is seen along this line. An edge within reach of the picture's own blur, nearer or farther,
-// would mix its colour in: there is no paint beside it either. At each level of the picture a pixel spans twice as much.
-bool hidden(vec3 p, vec3 normal, float level) {
+// Whether something nearer, or farther, is seen within `pixels` beside the point: a picture that is blurred that far mixes
+// its colour in.
+bool beside_an_edge(vec3 p, vec3 plane, float pixels) {
   vec2 slope = p.xy / p.z;
-  vec3 plane = normal / dot(normal, p);  // dot(plane, ray) is the reciprocal depth of the plane along a ray of depth 1
-  if (before_and_behind_mm(slope, plane, 0.0).x > 0.04 + 0.002 * p.z) return true;
-  float reach = 1.5 * exp2(level) * u_pixel_rad * (1.0 + dot(slope, slope));  // a barrel's pixels grow towards its edge
+  float reach = pixels * u_pixel_rad * (1.0 + dot(slope, slope));  // a barrel's pixels grow towards its edge
   float margin = 0.25 + 0.015 * p.z;
   float farthest_own = 1.0 / (p.z + margin);
   vec2 step_by = vec2(reach, 0.0);
@@ -48,8 +46,12 @@ void main() {
   vec2 pixel = lens_pixel(p);
   float weight = mask_weight(pixel);
   float cos_angle = -dot(normal, p) / distance_mm;
+  if (weight <= 0.0) discard;
+  vec3 plane = normal / dot(normal, p);  // dot(plane, ray) is the reciprocal depth of the plane along a ray of depth 1
+  if (before_and_behind_mm(p.xy / p.z, plane, 0.0).x > 0.04 + 0.002 * p.z) discard;  // something nearer hides it
+  if (beside_an_edge(p, plane, 1.5)) discard;
   float level = picture_level(distance_mm, cos_angle);
-  if (weight <= 0.0 || hidden(p, normal, level)) discard;
+  if (level > 0.0 && beside_an_edge(p, plane, 1.5 * exp2(level))) level = 0.0;  // rather grainy than of two colours
   vec3 colour = picture_at(pixel, level);
   weight *= clamp((cos_angle - u_cos_obliquity) * 10.0, 0.004, 1.0);  // no jagged edge from triangle to triangle
   put(evened_out(colour, p, distance_mm, cos_angle), weight, core_weight(pixel), record_of(distance_mm, cos_angle));

@@ -1,8 +1,6 @@
 // Every pose is a capture of its own; its frames follow each other as a stream's do.
 #include "tools/bench/paint/paint_bench.hpp"
 
-#include <GLES3/gl31.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -90,7 +88,8 @@ Result<Screen> make_screen(const Surface& surface, const AtlasLayout& layout, co
 
 class Bench {
  public:
-  Bench(Painter& painter, Screen& screen, Screen& full) : painter_(painter), screen_(screen), full_(full) {
+  Bench(const GlContext& context, Painter& painter, Screen& screen, Screen& full)
+      : context_(context), painter_(painter), screen_(screen), full_(full) {
     for (std::size_t i = 0; i < kFrames; ++i) frames_.push_back(nv12_frame(i));
     panel_.resize(packed_bytes(PixelFormat::xrgb8888, kPanelWidth, kPanelHeight));
     state_.status.video = state_.status.tracker = Freshness::live;
@@ -128,7 +127,7 @@ class Bench {
     std::vector<std::byte>& frame = frames_[count_++ % kFrames];
     const Took upload = time_of([&] {
       painter_.upload(packed_image(frame.data(), PixelFormat::nv12, kWidth, kHeight));
-      glFinish();
+      context_.finish();
     });
     const Took paint = time_of([&] {
       PaintReport report = painter_.paint(patch, unit);
@@ -137,7 +136,7 @@ class Bench {
         report = painter_.paint_more();
         texels_of_step_ += report.texels;
       }
-      glFinish();
+      context_.finish();
     });
     upload_.push_back(upload);
     paint_.push_back(paint);
@@ -154,6 +153,7 @@ class Bench {
 
   void turn() { state_.eye.position_mm.x() += 1; }
 
+  const GlContext& context_;
   Painter& painter_;
   Screen &screen_, &full_;
   std::vector<std::vector<std::byte>> frames_;
@@ -191,7 +191,7 @@ Result<PaintBenchReport> run_paint_bench(const Surface& surface, std::span<const
   auto full = make_screen(surface, *layout, scope, settings, surface.mesh.triangles.size());
   if (!full) return tl::unexpected(full.error());
 
-  Bench bench(*painter, *screen, *full);
+  Bench bench(*context, *painter, *screen, *full);
   CutoutPatch patch(patch_capacity(limits));
   std::uint32_t unit = 0;
   for (const Pose<M, C>& X_MC : poses) {
