@@ -100,8 +100,8 @@ TEST(RealCamera, AllSevenPartialViewsOfTheColouredBoard) {
   EXPECT_LE(c->hand_eye.closed_form.scatter_mm,
             1.43);  // 1.26 over all seven views; 1.43 is the verified figure over five
   EXPECT_LE(c->hand_eye.refined.scatter_mm, 1.5);
-  EXPECT_LE(c->hand_eye.leave_one_out_mm,
-            1.9);  // 1.54 to 1.81 as the noise is set; the 1.3 that is wanted is not reached
+  // 1.41; the 1.3 that is wanted is not reached: see tools/README.md.
+  EXPECT_LE(c->hand_eye.leave_one_out_mm, 1.45);
 }
 
 TEST(RealHandEye, FourPosesOfARobotGiveTheVerifiedParkSolution) {

@@ -114,8 +114,9 @@ double coverage(const std::vector<BoardView>& views, const CircularMask& mask, d
            kCells * static_cast<int>(y / views.front().height_px * kCells);
   };
   for (int i = 0; i < kCells * kCells; ++i) {
-    const double x = (i % kCells + 0.5) * views.front().width_px / kCells,
-                 y = (i / kCells + 0.5) * views.front().height_px / kCells;
+    const int column = i % kCells, row = i / kCells;
+    const double x = (column + 0.5) * views.front().width_px / kCells,
+                 y = (row + 0.5) * views.front().height_px / kCells;
     if (std::hypot(x - mask.cx_px, (y - mask.cy_px) / aspect) < mask.radius_px) all.insert(i);
   }
   for (const BoardView& view : views)

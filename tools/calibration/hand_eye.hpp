@@ -5,16 +5,10 @@
 #include <vector>
 
 #include "tools/calibration/camera_solver.hpp"
+#include "tools/calibration/tracker_noise.hpp"
 #include "tools/registration/poses_file.hpp"
 
 namespace orcart {
-
-struct TrackerNoise {
-  double marker_mm = 0.25;                              ///< standard deviation of one marker's place
-  double body_radius_mm = 40;                           ///< of the four markers about their middle
-  double position_mm() const { return marker_mm / 2; }  ///< of the body: mean of four markers
-  double turn_rad() const { return marker_mm / (1.41 * body_radius_mm); }  ///< of the body about one axis
-};
 
 /// One view: the marker's pose, and what the camera saw.
 struct HandEyeView {
@@ -37,15 +31,31 @@ struct HandEyeFit {
 /// fewer than three views and motions that turn about one axis only.
 Result<HandEyeFit> hand_eye_closed_form(const std::vector<HandEyeView>& views);
 
-/// Starts from the closed form; board poses and, where `refine_lens`, the lens move along with the hand-eye
-/// pose.
 enum class LensRole { held, refined };
-Result<HandEyeFit> refine_hand_eye(const std::vector<HandEyeView>& views, const Lens& lens,
-                                   const TrackerNoise& noise, LensRole role);
+struct RefineTask {
+  TrackerNoise noise;
+  LensRole role = LensRole::refined;
+  /// How many corners count as one. What is left over in a view is mostly the lens model's misfit, alike in
+  /// neighbouring corners: taken for independent they would tell the board's pose far too surely.
+  double corners_alike = 1;
+};
 
-/// The board's origin seen by each view, against the one that all other views place: RMS, mm.
+/// Starts from the closed form; board poses and, where it is refined, the lens move along with the hand-eye
+/// pose.
+Result<HandEyeFit> refine_hand_eye(const std::vector<HandEyeView>& views, const Lens& lens,
+                                   const RefineTask& task);
+
+/// The board's origin seen by each view, through the lens and hand-eye pose of all others, against where they
+/// place it: RMS, mm. `each`, where given, takes the distances.
 Result<double> leave_one_out_mm(const std::vector<HandEyeView>& views, const Lens& lens,
-                                const TrackerNoise& noise, LensRole role);
+                                const RefineTask& task, std::vector<double>* each = nullptr);
+
+/// How many corners count as one: the sum of the residuals' correlations over three squares around a corner.
+double corners_alike(const std::vector<HandEyeView>& views, const Lens& lens);
+
+/// RMS distance by which the tracker's noise alone throws the board's origin, seen through one view.
+double tracker_floor_mm(const std::vector<HandEyeView>& views, const HandEyeFit& fit,
+                        const TrackerNoise& noise);
 
 /// Boards that look the same upside down are turned so that all views agree with the motion of the marker.
 void settle_half_turns(std::vector<HandEyeView>& views, const Pattern& pattern);

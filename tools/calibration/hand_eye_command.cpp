@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include <Eigen/Geometry>
-#include <opencv2/calib3d.hpp>
-
+#include "tools/calibration/board_pose.hpp"
 #include "tools/registration/json_text.hpp"
 
 namespace orcart {
@@ -32,27 +30,6 @@ Result<std::vector<Pose<T, S>>> paired(const std::vector<std::filesystem::path>&
   return result;
 }
 
-}  // namespace
-
-Result<Pose<C, B>> board_pose(const BoardView& view, const Lens& lens) {
-  std::vector<cv::Point3d> board;
-  std::vector<cv::Point2d> flat;
-  for (const BoardCorner& c : view.corners) {
-    const auto direction = direction_of(lens, c.pixel_px);
-    if (!direction || direction->z() < 0.05) continue;
-    board.emplace_back(c.board_mm.x(), c.board_mm.y(), 0);
-    flat.emplace_back(direction->x() / direction->z(), direction->y() / direction->z());
-  }
-  cv::Vec3d r, t;
-  if (board.size() < 6 || !cv::solvePnP(board, flat, cv::Matx33d::eye(), cv::noArray(), r, t))
-    return fail(view.image.string() + ": the board's pose cannot be told through this lens");
-  const Eigen::Vector3d turn(r[0], r[1], r[2]);
-  return Pose<C, B>{.rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix(),
-                    .translation_mm = {t[0], t[1], t[2]}};
-}
-
-namespace {
-
 /// Corners that the passport's lens contradicts: farther off than six robust deviations, and at least a
 /// pixel.
 void drop_outliers(BoardView& view, const Pose<C, B>& X_CB, const Lens& lens) {
@@ -72,23 +49,26 @@ void drop_outliers(BoardView& view, const Pose<C, B>& X_CB, const Lens& lens) {
 /// The lens moves along only where that places views better that were left out.
 Result<void> refine(const std::vector<HandEyeView>& views, const Lens& lens, const TrackerNoise& noise,
                     HandEyeCalibration& result) {
-  LensRole role = LensRole::held;
+  RefineTask best{.noise = noise, .role = LensRole::held};
+  best.corners_alike = corners_alike(views, lens);
   if (views.size() > 3) {
-    const auto held = leave_one_out_mm(views, lens, noise, LensRole::held);
-    const auto moved = leave_one_out_mm(views, lens, noise, LensRole::refined);
-    if (held) result.leave_one_out_mm = *held;
-    if (moved && (!held || *moved < *held)) {
-      role = LensRole::refined;
-      result.leave_one_out_mm = *moved;
-    }
+    RefineTask moved = best;
+    moved.role = LensRole::refined;
+    std::vector<double> held_each, moved_each;
+    const auto held_mm = leave_one_out_mm(views, lens, best, &held_each);
+    const auto moved_mm = leave_one_out_mm(views, lens, moved, &moved_each);
+    const bool moves = moved_mm && (!held_mm || *moved_mm < *held_mm);
+    if (moves) best = moved;
+    if (held_mm || moved_mm) result.leave_one_out_mm = moves ? *moved_mm : *held_mm;
+    result.left_out_mm = moves ? moved_each : held_each;
     result.notes.emplace_back(
-        role == LensRole::held
-            ? "the lens was held: moving it along places views no better that were left out"
-            : "the lens was refined along with the hand-eye pose");
+        moves ? "the lens was refined along with the hand-eye pose"
+              : "the lens was held: moving it along places views no better that were left out");
   }
-  auto refined = refine_hand_eye(views, lens, noise, role);
+  auto refined = refine_hand_eye(views, lens, best);
   if (!refined) return tl::unexpected(refined.error());
   result.refined = std::move(*refined);
+  result.floor_mm = tracker_floor_mm(views, result.refined, noise);
   return {};
 }
 

@@ -23,7 +23,9 @@ struct HandEyeCalibration {
   ScopeModel scope;  ///< the passport given, with X_SC, the refined lens and residual_mm
   HandEyeFit closed_form, refined;
   double leave_one_out_mm = 0;
-  std::vector<std::string> names;  ///< of the views used
+  std::vector<double> left_out_mm;  ///< of each view
+  double floor_mm = 0;              ///< what the declared tracker noise alone makes of the board's scatter
+  std::vector<std::string> names;   ///< of the views used
   std::vector<std::string> notes;
 };
 
@@ -31,8 +33,5 @@ struct HandEyeCalibration {
 /// by order.
 Result<HandEyeCalibration> calibrate_hand_eye(const HandEyeCommand& command, const ScopeModel& scope,
                                               const Progress& progress);
-
-/// The board's pose for one view through a known lens.
-Result<Pose<C, B>> board_pose(const BoardView& view, const Lens& lens);
 
 }  // namespace orcart

@@ -3,8 +3,10 @@
 #include <cmath>
 
 #include <ceres/ceres.h>
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "tools/calibration/board_pose.hpp"
 #include "tools/calibration/hand_eye.hpp"
 
 namespace orcart {
@@ -47,10 +49,10 @@ struct PixelCost {
 /// The measured marker pose against the one that board, camera and hand-eye imply: X_TS = X_TB X_BC X_CS.
 struct MarkerCost {
   Block measured;
-  double position_mm, turn_rad;
+  Eigen::Matrix<double, 6, 6> whitening;  ///< of turn and shift in the tracker's axes
   template <class Number>
   bool operator()(const Number* X_CB, const Number* X_SC, const Number* X_TB, Number* residual) const {
-    Number tb[4], cb[4], sc[4], bc[4], cs[4], tc[4], ts[4], st[4], off[4], turn[3], t[3], a[3], b[3];
+    Number tb[4], cb[4], sc[4], bc[4], cs[4], tc[4], ts[4], st[4], off[4], a[3], b[3], error[6];
     ceres::AngleAxisToQuaternion(X_TB, tb);
     ceres::AngleAxisToQuaternion(X_CB, cb);
     ceres::AngleAxisToQuaternion(X_SC, sc);
@@ -62,16 +64,17 @@ struct MarkerCost {
     ceres::QuaternionRotatePoint(cs, X_SC + 3, a);
     for (int i = 0; i < 3; ++i) a[i] = -a[i] - X_CB[3 + i];
     ceres::QuaternionRotatePoint(bc, a, b);
-    ceres::QuaternionRotatePoint(tb, b, t);
+    ceres::QuaternionRotatePoint(tb, b, error + 3);
     const Number given[3] = {Number(measured[0]), Number(measured[1]), Number(measured[2])};
     Number gq[4];
     ceres::AngleAxisToQuaternion(given, gq);
     conjugate(gq, st);
-    ceres::QuaternionProduct(st, ts, off);
-    ceres::QuaternionToAngleAxis(off, turn);
-    for (int i = 0; i < 3; ++i) {
-      residual[i] = turn[i] / turn_rad;
-      residual[3 + i] = (t[i] + X_TB[3 + i] - measured[static_cast<std::size_t>(3 + i)]) / position_mm;
+    ceres::QuaternionProduct(ts, st, off);
+    ceres::QuaternionToAngleAxis(off, error);
+    for (int i = 0; i < 3; ++i) error[3 + i] += X_TB[3 + i] - measured[static_cast<std::size_t>(3 + i)];
+    for (int i = 0; i < 6; ++i) {
+      residual[i] = Number(0);
+      for (int j = 0; j <= i; ++j) residual[i] += whitening(i, j) * error[j];
     }
     return true;
   }
@@ -92,14 +95,19 @@ double rms_px(const std::vector<HandEyeView>& views, const HandEyeFit& fit) {
   return count > 0 ? std::sqrt(sum2 / static_cast<double>(count)) : 0;
 }
 
+Eigen::Matrix<double, 6, 6> whitening(const HandEyeView& view, const TrackerNoise& noise) {
+  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> root(pose_covariance(noise, view.X_TS.translation_mm));
+  return root.matrixL().solve(Eigen::Matrix<double, 6, 6>::Identity());
+}
+
 }  // namespace
 
 Result<HandEyeFit> refine_hand_eye(const std::vector<HandEyeView>& views, const Lens& lens,
-                                   const TrackerNoise& noise, LensRole role) {
+                                   const RefineTask& task) {
   auto fit = hand_eye_closed_form(views);
   if (!fit) return fit;
   fit->lens = lens;
-  const double sigma_px = std::max(0.05, rms_px(views, *fit) / 1.41);
+  const double sigma_px = std::sqrt(task.corners_alike) * std::max(0.05, rms_px(views, *fit) / 1.41);
   Intrinsics intrinsics = intrinsics_of(lens);
   Block hand_eye = block_of(fit->X_SC), board = block_of(fit->X_TB);
   std::vector<Block> cameras;
@@ -110,16 +118,16 @@ Result<HandEyeFit> refine_hand_eye(const std::vector<HandEyeView>& views, const 
       problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PixelCost, 2, kIntrinsics, 6>(
                                    new PixelCost{lens.model, c.pixel_px, c.board_mm, sigma_px}),
                                nullptr, intrinsics.data(), cameras[v].data());
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<MarkerCost, 6, 6, 6, 6>(new MarkerCost{
-                                 block_of(views[v].X_TS), noise.position_mm(), noise.turn_rad()}),
-                             new ceres::HuberLoss(3), cameras[v].data(), hand_eye.data(), board.data());
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<MarkerCost, 6, 6, 6, 6>(
+                                 new MarkerCost{block_of(views[v].X_TS), whitening(views[v], task.noise)}),
+                             new ceres::HuberLoss(5), cameras[v].data(), hand_eye.data(), board.data());
   }
   // Coefficients that the passport holds at zero stay there.
   std::vector<int> fixed;
   for (int i = 0; i < kIntrinsics; ++i)
     if (intrinsics[static_cast<std::size_t>(i)] == 0) fixed.push_back(i);
   if (lens.model != LensModel::poly4 && fixed.empty()) fixed = {9, 10};
-  if (role == LensRole::held) {
+  if (task.role == LensRole::held) {
     problem.SetParameterBlockConstant(intrinsics.data());
   } else if (!fixed.empty()) {
     problem.SetManifold(intrinsics.data(), new ceres::SubsetManifold(kIntrinsics, fixed));
@@ -143,15 +151,23 @@ Result<HandEyeFit> refine_hand_eye(const std::vector<HandEyeView>& views, const 
 }
 
 Result<double> leave_one_out_mm(const std::vector<HandEyeView>& views, const Lens& lens,
-                                const TrackerNoise& noise, LensRole role) {
+                                const RefineTask& task, std::vector<double>* each) {
   double sum2 = 0;
   for (std::size_t left = 0; left < views.size(); ++left) {
     std::vector<HandEyeView> others = views;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(left));
-    const auto fit = refine_hand_eye(others, lens, noise, role);
+    const auto fit = refine_hand_eye(others, lens, task);
     if (!fit) return tl::unexpected(fit.error());
-    const Eigen::Vector3d seen = (views[left].X_TS * fit->X_SC * views[left].X_CB).translation_mm;
-    sum2 += (seen - fit->X_TB.translation_mm).squaredNorm();
+    Pose<C, B> X_CB = views[left].X_CB;
+    if (task.role == LensRole::refined) {
+      const auto through = board_pose(views[left].board, fit->lens);
+      if (!through) return tl::unexpected(through.error());
+      X_CB = *through;
+    }
+    const Eigen::Vector3d seen = (views[left].X_TS * fit->X_SC * X_CB).translation_mm;
+    const double off2 = (seen - fit->X_TB.translation_mm).squaredNorm();
+    if (each != nullptr) each->push_back(std::sqrt(off2));
+    sum2 += off2;
   }
   return std::sqrt(sum2 / static_cast<double>(views.size()));
 }

@@ -1,5 +1,6 @@
 // orcart calibrate handeye: where the camera sits on its marker.
 #include <cstdio>
+#include <map>
 #include <memory>
 
 #include "firmware-host/files/scope_file.hpp"
@@ -29,13 +30,15 @@ std::string answer(const HandEyeCalibration& c, bool as_json) {
   for (const std::string& note : c.notes) notes.push_back(json::text(note));
   for (std::size_t i = 0; i < c.names.size(); ++i)
     views.push_back("{\"image\": " + json::text(c.names[i]) +
-                    ", \"scatter_mm\": " + json::number(c.refined.scatters_mm[i]) + "}");
+                    ", \"scatter_mm\": " + json::number(c.refined.scatters_mm[i]) + ", \"left_out_mm\": " +
+                    (i < c.left_out_mm.size() ? json::number(c.left_out_mm[i]) : "null") + "}");
   if (as_json)
     return "{\"X_SC\": " + json::pose(c.refined.X_SC) +
            ",\n \"closed_form_X_SC\": " + json::pose(c.closed_form.X_SC) +
            ",\n \"scatter_mm\": " + json::number(c.refined.scatter_mm) +
            ", \"closed_form_scatter_mm\": " + json::number(c.closed_form.scatter_mm) +
            ", \"leave_one_out_mm\": " + json::number(c.leave_one_out_mm) +
+           ", \"tracker_floor_mm\": " + json::number(c.floor_mm) +
            ", \"rms_px\": " + json::number(c.refined.rms_px) + ",\n \"views\": " + json::list(views) +
            ",\n \"notes\": " + json::list(notes) + "}\n";
   std::string out =
@@ -46,8 +49,10 @@ std::string answer(const HandEyeCalibration& c, bool as_json) {
       "each view out in "
       "turn %.3f mm\n",
       refined.x(), refined.y(), refined.z(), c.refined.scatter_mm, c.refined.rms_px, c.leave_one_out_mm);
+  out += json::format("the tracker's declared noise alone would scatter it by %.3f mm\n", c.floor_mm);
   for (std::size_t i = 0; i < c.names.size(); ++i)
-    out += json::format("  %-32s %.3f mm\n", c.names[i].c_str(), c.refined.scatters_mm[i]);
+    out += json::format("  %-32s %.3f mm", c.names[i].c_str(), c.refined.scatters_mm[i]) +
+           (i < c.left_out_mm.size() ? json::format(", left out %.3f mm\n", c.left_out_mm[i]) : "\n");
   for (const std::string& note : c.notes) out += "note: " + note + "\n";
   return out;
 }
@@ -78,13 +83,22 @@ void add_hand_eye(CLI::App& calibrate, int& exit_code) {
   verb->add_option("--pattern", arguments->pattern, "as for `orcart calibrate camera`")->required();
   verb->add_option("--scope", arguments->scope, "the scope's passport")->required();
   verb->add_option("--out", arguments->out, "the passport to write; the one read unless told");
-  verb->add_option("--marker-noise", arguments->command.noise.marker_mm, "of one marker, mm RMS")
+  verb->add_option("--marker-noise", arguments->command.noise.marker_mm, "of one marker in 3-D, mm RMS")
       ->check(CLI::Range(0.001, 5.0))
       ->capture_default_str();
   verb->add_option("--marker-radius", arguments->command.noise.body_radius_mm,
                    "of the body's markers about their middle, mm")
       ->check(CLI::Range(5.0, 500.0))
       ->capture_default_str();
+  verb->add_option("--depth-ratio", arguments->command.noise.depth_ratio,
+                   "marker noise along the sensor's z against x and y")
+      ->check(CLI::Range(1.0, 20.0))
+      ->capture_default_str();
+  static const std::map<std::string, PosesIn> frames{{"tracker", PosesIn::tracker},
+                                                     {"reference", PosesIn::reference}};
+  verb->add_option("--poses-in", arguments->command.noise.poses_in,
+                   "tracker (the default), or reference: a marker body beside the board")
+      ->transform(CLI::CheckedTransformer(frames));
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   verb->callback([arguments, &exit_code] {
     const auto done = run(*arguments);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,7 @@ inline std::string list(const std::vector<std::string>& items) {
 template <class Numbers>
 std::string numbers(const Numbers& values) {
   std::vector<std::string> items;
+  items.reserve(static_cast<std::size_t>(std::size(values)));
   for (const double value : values) items.push_back(number(value));
   return list(items);
 }

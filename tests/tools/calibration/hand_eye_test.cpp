@@ -39,11 +39,11 @@ TEST(HandEye, ClosedFormIsExactWithoutNoise) {
 
 TEST(HandEye, RefinementKeepsTheTruthAndHeldLens) {
   const Lens lens = test_lens(LensModel::brown);
-  const auto fit = refine_hand_eye(room(0.2), lens, {}, LensRole::refined);
+  const auto fit = refine_hand_eye(room(0.2), lens, {});
   ASSERT_TRUE(fit) << fit.error().message;
   EXPECT_LT((fit->X_SC.translation_mm - kX_SC.translation_mm).norm(), 0.3);
   EXPECT_NEAR(fit->lens.fx_px, lens.fx_px, 1);
-  const auto held = refine_hand_eye(room(0.2), lens, {}, LensRole::held);
+  const auto held = refine_hand_eye(room(0.2), lens, {.role = LensRole::held});
   ASSERT_TRUE(held);
   EXPECT_EQ(held->lens.fx_px, lens.fx_px);
 }

@@ -26,6 +26,7 @@ struct SimulatedViews {
   int views = 10;
   double noise_px = 0;
   double tilt_rad = 0.5;
+  double roll_rad = 0;  ///< about the optical axis, each way, evenly over the views
   double nearest_mm = 25, farthest_mm = 40;
 };
 
@@ -47,8 +48,13 @@ inline std::vector<BoardView> simulated_views(const Lens& lens, const SimulatedV
   std::vector<BoardView> views;
   for (int v = 0; v < task.views; ++v) {
     const Eigen::Vector3d turn(task.tilt_rad * any(random), task.tilt_rad * any(random), 0.4 * any(random));
-    const Pose<C, B> X_CB = board_before(
-        task.nearest_mm + (task.farthest_mm - task.nearest_mm) * v / std::max(1, task.views - 1), turn);
+    const double part = static_cast<double>(v) / std::max(1, task.views - 1);
+    Pose<C, C> roll;
+    roll.rotation =
+        Eigen::AngleAxisd(task.roll_rad * (4 * std::abs(part - 0.5) - 1), Eigen::Vector3d::UnitZ())
+            .toRotationMatrix();
+    const Pose<C, B> X_CB =
+        roll * board_before(task.nearest_mm + (task.farthest_mm - task.nearest_mm) * part, turn);
     BoardView view{.image = "view" + std::to_string(v),
                    .width_px = 640,
                    .height_px = 480,
