@@ -156,9 +156,10 @@ Result<FrameBuffer, PortFault> V4l2FrameSource::take() noexcept {
     if (!filled) break;
     silent_at_ = setup_.clock.now() + std::max<Nanos>(kSilence, 6 * period_of(format_.rate_hz));
     poll_failed_ = false;
+    if (filled->index >= (decodes() ? wire_.size() : slots_.size())) return fail_with(PortFault::io);
+    if (!was_queued(filled->index)) return tl::unexpected(PortFault::damaged);
     --queued_;
     const bool bad = filled->damaged || (!decodes() && filled->bytes < agreed_.image_bytes);
-    if (filled->index >= (decodes() ? wire_.size() : slots_.size())) return fail_with(PortFault::io);
     if (!bad && !is_other_field(*filled)) return decodes() ? decode(*filled) : accept(*filled);
     if (!decodes()) slots_[filled->index].place = Place::home;
     queue(filled->index);
@@ -168,6 +169,12 @@ Result<FrameBuffer, PortFault> V4l2FrameSource::take() noexcept {
   if (queued_ == 0) silent_at_ = setup_.clock.now() + kSilence;  // ours to give, not the driver's fault
   if (setup_.clock.now() > silent_at_) return fail_with(PortFault::timed_out);
   return tl::unexpected(PortFault::nothing_yet);
+}
+
+// v4l2loopback fills and hands out any buffer, whoever holds it. A second loan would be of memory that goes
+// home with the first.
+bool V4l2FrameSource::was_queued(std::uint32_t index) const noexcept {
+  return queued_ > 0 && (decodes() || slots_[index].place == Place::queued);
 }
 
 bool V4l2FrameSource::is_other_field(const FilledBuffer& filled) const noexcept {

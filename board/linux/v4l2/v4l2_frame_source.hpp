@@ -70,6 +70,7 @@ class V4l2FrameSource final : public FrameSource {
   Result<FrameBuffer, PortFault> accept(const FilledBuffer& filled) noexcept;
   ImageDescriptor picture_in(const BufferMapping& memory) const noexcept;
   Result<FrameBuffer, PortFault> decode(const FilledBuffer& filled) noexcept;
+  bool was_queued(std::uint32_t index) const noexcept;
   bool is_other_field(const FilledBuffer& filled) const noexcept;
   std::size_t free_picture() const noexcept;
   bool decodes() const noexcept { return setup_.wish.format == WireFormat::mjpeg; }

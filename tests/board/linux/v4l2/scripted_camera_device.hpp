@@ -50,6 +50,10 @@ class ScriptedCameraDevice final : public DeviceCalls {
     return true;
   }
   bool fill() { return fill(image_bytes); }
+  /// As v4l2loopback does: fills and hands out a buffer that nobody queued.
+  void fill_unqueued(std::uint32_t index) {
+    filled.push_back({index, sequence++, image_bytes, 0, V4L2_FIELD_NONE, clock_.now()});
+  }
   std::byte* memory(std::uint32_t index) { return buffers[index]->data(); }
 
   int open(const char*, int) noexcept override {

@@ -139,6 +139,24 @@ TEST_F(V4l2FrameSourceTest, KeepsLentPicturesReadableWhileTheDeviceIsPulledOutAn
   EXPECT_FALSE(device.mapped.contains(lent->image.planes[0].data));
 }
 
+TEST_F(V4l2FrameSourceTest, LendsNoBufferTwiceThoughItsDriverHandsItOutAgain) {
+  open();
+  ASSERT_TRUE(device.fill());
+  const auto lent = source->take();
+  ASSERT_TRUE(lent);
+  device.dequeue_error = -EIO;
+  EXPECT_EQ(fault(), PortFault::io);
+  device.dequeue_error = 0;
+  ASSERT_TRUE(source->recover());
+  device.fill_unqueued(lent->index);
+  EXPECT_EQ(fault(), PortFault::damaged) << "its memory would be unmapped when the first loan comes home";
+  EXPECT_TRUE(device.mapped.contains(lent->image.planes[0].data));
+  EXPECT_EQ(device.queued.size(), 3u) << "nor is it queued while it is lent";
+  source->give_back(lent->index);
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(device.fill());
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(source->take());
+}
+
 TEST_F(V4l2FrameSourceTest, LeaksNothingOverManyFaultsAndItsEnd) {
   open();
   for (int i = 0; i < 20; ++i) {
