@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "firmware-host/app/capture_log.hpp"
 #include "firmware-host/app/cart.hpp"
 #include "firmware-host/app/device_log.hpp"
 #include "firmware-host/app/devices.hpp"
@@ -92,7 +93,8 @@ Result<std::vector<CoveragePoint>> go(Cart& cart, const Devices& devices, Clock&
   const bool ends = devices.end() != Instant::max();
   const Instant end = ends ? devices.end() + 500ms : Instant::max();
   const auto quit = [&] { return stop_asked != 0 || (preview != nullptr && preview->quit_asked()); };
-  DeviceLog log;
+  DeviceLog devices_log;
+  CaptureLog captures_log;
   while (clock.now() < end && !quit()) {
     const Instant next = std::min(end, clock.now() + 250ms);
     if (simulated != nullptr) {
@@ -103,7 +105,7 @@ Result<std::vector<CoveragePoint>> go(Cart& cart, const Devices& devices, Clock&
     const double at_s = seconds(clock.now() - devices.start());
     const Cart::Now now = cart.now();
     if (at_s >= 0) coverage.push_back({.at_s = at_s, .covered = now.coverage});
-    if (const std::string news = log.news(now); !news.empty()) {
+    if (const std::string news = devices_log.news(now) + captures_log.news(cart.captures()); !news.empty()) {
       progress.end();
       std::fputs(news.c_str(), stderr);
     }

@@ -31,7 +31,11 @@ std::uint32_t SyncStage::take_presses() noexcept {
     const CaptureRequest request{.unit = event.unit, .edge_at = event.at, .streaming = streaming};
     switch (event.kind) {
       case PedalEventKind::capture:
-        order(selector_.request(request) ? PaintOrderKind::acknowledge : PaintOrderKind::fail, request);
+        if (selector_.request(request)) {
+          order(PaintOrderKind::acknowledge, request);
+        } else {
+          fail(request, Refusal::queue_full);
+        }
         break;
       case PedalEventKind::cancel:
         (void)selector_.cancel(event.unit);
@@ -74,10 +78,7 @@ void SyncStage::decide(Instant now) noexcept {
     if (!matched) break;
     select(*matched, now);
   }
-  while (const auto failed = selector_.next_failed(now)) {  // bound: the presses that can wait
-    (void)lanes_.orders.try_push(
-        {.kind = PaintOrderKind::fail, .request = *failed, .refusal = failed->reason});
-  }
+  while (const auto failed = selector_.next_failed(now)) fail(*failed, failed->reason);  // bound: as may wait
 }
 
 void SyncStage::select(const MatchedFrame& matched, Instant now) noexcept {
@@ -89,6 +90,10 @@ void SyncStage::select(const MatchedFrame& matched, Instant now) noexcept {
 
 void SyncStage::order(PaintOrderKind kind, const CaptureRequest& request) noexcept {
   (void)lanes_.orders.try_push({.kind = kind, .request = request});
+}
+
+void SyncStage::fail(const CaptureRequest& request, Refusal why) noexcept {
+  (void)lanes_.orders.try_push({.kind = PaintOrderKind::fail, .request = request, .refusal = why});
 }
 
 void SyncStage::tell_scope(Instant now) noexcept {

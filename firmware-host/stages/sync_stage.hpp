@@ -37,6 +37,7 @@ class SyncStage final : public Stage {
   void decide(Instant now) noexcept;
   void select(const MatchedFrame& matched, Instant now) noexcept;
   void order(PaintOrderKind kind, const CaptureRequest& request) noexcept;
+  void fail(const CaptureRequest& request, Refusal why) noexcept;
   void tell_scope(Instant now) noexcept;
 
   SyncStageSettings settings_;

@@ -75,6 +75,15 @@ TEST_F(SyncStageTest, FailsAPressWhileTheToolIsHiddenWithThatReason) {
   EXPECT_EQ(failed->request.edge_at, at_ms(150));
 }
 
+TEST_F(SyncStageTest, FailsAPressThatFindsTooManyWaitingWithThatReason) {
+  run(100);
+  for (std::size_t i = 0; i <= CaptureSelector::kMostWaiting; ++i) press(100);
+  run(101);
+  EXPECT_EQ(count(PaintOrderKind::acknowledge), static_cast<std::ptrdiff_t>(CaptureSelector::kMostWaiting));
+  ASSERT_EQ(count(PaintOrderKind::fail), 1);
+  EXPECT_EQ(std::ranges::find(orders, PaintOrderKind::fail, &PaintOrder::kind)->refusal, Refusal::queue_full);
+}
+
 TEST_F(SyncStageTest, TellsWhereTheScopeIsNow) {
   run(200);
   ScopeNow scope;
