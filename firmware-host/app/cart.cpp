@@ -64,6 +64,7 @@ struct Cart::State {
   std::unique_ptr<PanelStage> showing;
   std::vector<std::unique_ptr<WorkerThread>> threads;
   std::vector<ThreadLedger const*> thread_ledgers;
+  std::vector<std::unique_ptr<TraceRing>> traces;
   std::unique_ptr<SimulatedRunner> runner;
   std::vector<std::string> lacks;
   bool running = false;
@@ -74,6 +75,7 @@ struct Cart::State {
   void warm_up();
   ThreadPlan plan(ThreadId id);
   std::vector<ThreadPlan> plans();
+  void watch(ThreadPlan& plan);
   StageLedger* ledger(StageId id) { return &ledgers[static_cast<std::size_t>(id)]; }
 };
 
@@ -153,7 +155,8 @@ void Cart::State::build_stages() {
                         .clock = setup.clock,
                         .lanes = lanes,
                         .frames = frames,
-                        .captures = captures},
+                        .captures = captures,
+                        .stages = ledgers},
       PanelStageSettings{
           .eye = eye_on(patient.surface.mesh, vector_of(config.view_from), vector_of(config.view_up)),
           .simulated = config.simulated(),
@@ -223,6 +226,15 @@ ThreadPlan Cart::State::plan(ThreadId id) {
   return plan;
 }
 
+void Cart::State::watch(ThreadPlan& plan) {
+  if (setup.traced > 0) plan.trace = traces.emplace_back(std::make_unique<TraceRing>(setup.traced)).get();
+  if (setup.wrapper == nullptr) return;
+  for (std::size_t i = 0; i < plan.stages.size(); ++i) {
+    const auto id = static_cast<StageId>(plan.ledgers[i] - ledgers.data());
+    plan.stages[i] = &setup.wrapper->around(plan.spec, id, *plan.stages[i]);
+  }
+}
+
 std::vector<ThreadPlan> Cart::State::plans() {
   std::vector<ThreadPlan> all;
   for (const ThreadId id :
@@ -230,6 +242,7 @@ std::vector<ThreadPlan> Cart::State::plans() {
     all.push_back(plan(id));
   }
   if (setup.session != nullptr) all.push_back(plan(ThreadId::session));
+  for (ThreadPlan& one : all) watch(one);
   return all;
 }
 
@@ -306,6 +319,9 @@ const std::array<StageLedger, kStageCount>& Cart::stage_ledgers() const {
 }
 const std::vector<ThreadLedger const*>& Cart::thread_ledgers() const {
   return state_->thread_ledgers;
+}
+const std::vector<std::unique_ptr<TraceRing>>& Cart::traces() const {
+  return state_->traces;
 }
 const std::vector<std::string>& Cart::lacks() const {
   return state_->lacks;

@@ -40,6 +40,14 @@ struct CartFigures {
   std::uint64_t panel_pictures = 0;
 };
 
+/// Puts a stage of its own around each of the cart's before the threads start: guards, and tests' bugs.
+class StageWrapper {
+ public:
+  virtual ~StageWrapper() = default;
+  /// What the thread will step instead of `stage`; owned by the wrapper, outlives the cart's run.
+  virtual Stage& around(const ThreadSpec& thread, StageId id, Stage& stage) = 0;
+};
+
 class Cart {
  public:
   struct Setup {
@@ -50,6 +58,8 @@ class Cart {
     NativeDisplay display{};          ///< where EGL is opened: the panel's card, or nowhere
     SessionStage* session = nullptr;  ///< null: nothing is kept on disk
     double longest_run_s = 3600;      ///< what the ledgers of frames and captures have room for
+    StageWrapper* wrapper = nullptr;  ///< null: the stages run as they are
+    std::size_t traced = 0;           ///< newest events kept of each thread; 0: nothing is traced
   };
   /// Builds and arms everything but the threads. The calling thread must be the one that calls
   /// run_simulated(), or start() and stop().
@@ -69,7 +79,9 @@ class Cart {
   const Ledger<CaptureRecord>& captures() const;
   const std::array<StageLedger, kStageCount>& stage_ledgers() const;
   const std::vector<ThreadLedger const*>& thread_ledgers()
-      const;                                      ///< in the order of ThreadId, those that ran
+      const;  ///< in the order of ThreadId, those that ran
+  /// What each thread traced, in the order of ThreadId, those that ran; empty where nothing was.
+  const std::vector<std::unique_ptr<TraceRing>>& traces() const;
   const std::vector<std::string>& lacks() const;  ///< of real-time rights: each a sentence with its remedy
   CartFigures figures() const;
   RenderClass render_class() const;

@@ -47,6 +47,9 @@ tl::expected<Options, int> read_options(int argc, char** argv) {
   app.add_option("--session", options.session, "keep every capture in this *.orcart file");
   app.add_option("--report", options.report_dir,
                  "write pictures, report.html and report.json into this folder");
+  app.add_option(
+      "--trace", options.trace,
+      "write what every thread, frame and capture did into this file, for https://ui.perfetto.dev");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

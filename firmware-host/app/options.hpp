@@ -20,6 +20,7 @@ struct Options {
   std::optional<Nanos> run_for;      ///< nothing: until SIGINT or SIGTERM, or the simulated procedure's end
   std::filesystem::path session;     ///< empty: nothing is kept
   std::filesystem::path report_dir;  ///< empty: no report
+  std::filesystem::path trace;       ///< empty: nothing is traced
 };
 
 /// "30s", "2m", "1500ms", "1h"; a bare number is seconds. Positive and at most a day.

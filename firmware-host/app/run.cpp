@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "firmware-host/app/budget_log.hpp"
 #include "firmware-host/app/capture_log.hpp"
 #include "firmware-host/app/cart.hpp"
 #include "firmware-host/app/device_log.hpp"
@@ -15,6 +16,7 @@
 #include "firmware-host/app/kept_session.hpp"
 #include "firmware-host/app/preview.hpp"
 #include "firmware-host/app/run_figures.hpp"
+#include "firmware-host/app/trace_file.hpp"
 #include "firmware-host/app/truth_check.hpp"
 #include "firmware-host/report/contact_sheet.hpp"
 #include "render/views/screen.hpp"
@@ -86,6 +88,7 @@ Result<std::vector<CoveragePoint>> go(Cart& cart, const Devices& devices, Clock&
                                       SimulatedClock* simulated, const Preview* preview, Progress& progress) {
   std::vector<CoveragePoint> coverage;
   std::optional<Heartbeat> heartbeat;
+  BudgetLog misses;
   if (simulated == nullptr) {
     if (auto started = cart.start(); !started) return tl::unexpected(started.error());
     heartbeat.emplace(ServiceManager::from_environment(), watched_threads(cart), clock);
@@ -108,6 +111,10 @@ Result<std::vector<CoveragePoint>> go(Cart& cart, const Devices& devices, Clock&
     if (const std::string news = devices_log.news(now) + captures_log.news(cart.captures()); !news.empty()) {
       progress.end();
       std::fputs(news.c_str(), stderr);
+    }
+    for (const std::string& line : misses.news(cart.stage_ledgers(), clock.now())) {
+      progress.end();
+      std::fprintf(stderr, "orcartd: %s\n", line.c_str());
     }
     if (now.panel == PortFault::io) return fail("the panel hangs: no picture came onto it for a second");
     if (ends) progress.show("procedure", std::max(0.0, at_s / seconds(end - devices.start())));
@@ -303,13 +310,18 @@ ExitCode run(const Options& options) {
                             .clock = clock,
                             .display = (*devices)->display(),
                             .session = session ? &session->stage() : nullptr,
-                            .longest_run_s = longest_run_s(**devices)});
+                            .longest_run_s = longest_run_s(**devices),
+                            .traced = options.trace.empty() ? 0 : kTracedEvents});
   if (!cart) return complain(cart.error(), ExitCode::device);
   auto coverage = go(**cart, **devices, clock, simulate ? &simulated : nullptr, preview.get(), progress);
   if (!coverage) return complain(coverage.error(), ExitCode::device);
   const double memory_mb = resident_mb();
   (*cart)->stop();
   ExitCode code = ExitCode::ok;
+  if (!options.trace.empty()) {
+    if (auto written = write_trace(options.trace, **cart); !written)
+      code = complain(written.error(), ExitCode::failed);
+  }
   if (session) {
     if (auto finished = session->finish((*cart)->stage_ledgers()); !finished)
       code = complain(finished.error(), ExitCode::failed);

@@ -154,7 +154,23 @@ void PanelStage::fill_status(Instant now) noexcept {
       coverage_due_ = now + 500ms;
     }
   }
+  tell_misses();
   choose_notice(now);
+}
+
+// All steps over their bounds so far, and the stage of the newest.
+void PanelStage::tell_misses() noexcept {
+  Status& status = screen_state_.status;
+  std::uint64_t misses = 0;
+  Instant newest = Instant::min();
+  for (const StageLedger& stage : parts_.stages) {  // bound: the topology's stages
+    misses += stage.over_bound();
+    const auto last = stage.last_miss();
+    if (!last || *last < newest) continue;
+    newest = *last;
+    status.missed_stage = stage.name();
+  }
+  status.budget_misses = static_cast<std::uint32_t>(misses);
 }
 
 void PanelStage::choose_notice(Instant now) noexcept {

@@ -5,12 +5,14 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <span>
 
 #include "board/ports/panel.hpp"
 #include "firmware-host/stages/frame_ledger.hpp"
 #include "firmware-host/stages/lanes.hpp"
 #include "firmware-host/stages/painter_stage.hpp"
 #include "firmware-host/stages/watched_fault.hpp"
+#include "realtime/kernel/budget.hpp"
 #include "realtime/kernel/clock.hpp"
 #include "realtime/kernel/stage.hpp"
 #include "realtime/sync/freshness.hpp"
@@ -39,6 +41,7 @@ class PanelStage final : public Stage {
     Lanes& lanes;
     Ledger<FrameRecord>& frames;
     Ledger<CaptureRecord>& captures;
+    std::span<const StageLedger> stages{};  ///< of the whole cart: whose misses the status line tells
   };
   PanelStage(const Parts& parts, const PanelStageSettings& settings);
 
@@ -68,6 +71,7 @@ class PanelStage final : public Stage {
   void take_flips(Instant now) noexcept;
   void settle(const Submitted& shown, Instant scan_out) noexcept;
   void fill_status(Instant now) noexcept;
+  void tell_misses() noexcept;
   void choose_notice(Instant now) noexcept;
   void notice(Notice::Level level, std::string_view text) noexcept;
 

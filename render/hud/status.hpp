@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 namespace orcart {
 
@@ -27,9 +28,10 @@ struct Status {
   bool streaming = false;
   std::uint32_t captures = 0;
   std::uint32_t late_frames = 0;
-  std::uint32_t budget_misses = 0;
-  float coverage = 0;    ///< 0..1
-  float latency_ms = 0;  ///< newest frame: dequeue to scan-out
+  std::uint32_t budget_misses = 0;  ///< steps over their hard bound, of all stages
+  std::string_view missed_stage{};  ///< the newest one's; a name that outlives the panel
+  float coverage = 0;               ///< 0..1
+  float latency_ms = 0;             ///< newest frame: dequeue to scan-out
   float rendered_hz = 0;
   Notice notice;  ///< the one thing a person should read now
 };

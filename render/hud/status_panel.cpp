@@ -53,7 +53,7 @@ class Figure {
 
  private:
   char* end() { return text_.data() + text_.size(); }
-  std::array<char, 48> text_{};
+  std::array<char, 80> text_{};
   char* at_ = text_.data();
 };
 
@@ -184,7 +184,8 @@ void draw_bar(HudCanvas& canvas, const HudBox& bar, const Status& status) {
   Figure figure;
   figure.whole(std::lround(status.rendered_hz)).words(" Hz");
   if (status.software_rendering) figure.words(", software");
-  if (status.budget_misses > 0) figure.words(", over budget ").whole(status.budget_misses);
+  if (status.budget_misses > 0)
+    figure.words(", over budget ").whole(status.budget_misses).words(", last ").words(status.missed_stage);
   canvas.text_ending({bar.x + bar.width - 24 * unit, base}, TextStyle::fine,
                      status.budget_misses > 0 ? kWarn : kQuiet, figure.view());
 }

@@ -65,7 +65,7 @@ std::unique_ptr<CartRig> CartRig::create(const RigWish& wish) {
   return rig;
 }
 
-bool CartRig::arm(SessionStage* session) {
+bool CartRig::arm(SessionStage* session, StageWrapper* wrapper, std::size_t traced) {
   const Ports ports = devices->ports();
   camera = std::make_unique<LentFrames>(ports.camera);
   auto made = Cart::create(
@@ -74,7 +74,9 @@ bool CartRig::arm(SessionStage* session) {
        .ports = {.tracker = ports.tracker, .camera = *camera, .pedal = ports.pedal, .panel = ports.panel},
        .clock = clock,
        .session = session,
-       .longest_run_s = 20});
+       .longest_run_s = 20,
+       .wrapper = wrapper,
+       .traced = traced});
   if (!made) {
     ADD_FAILURE() << made.error().message;
     return false;

@@ -34,7 +34,8 @@ class CartRig {
   static std::unique_ptr<CartRig> create(const RigWish& wish);
 
   /// Makes the cart: after faults were told to the devices.
-  [[nodiscard]] bool arm(SessionStage* session = nullptr);
+  [[nodiscard]] bool arm(SessionStage* session = nullptr, StageWrapper* wrapper = nullptr,
+                         std::size_t traced = 0);
   /// Runs until `since_start` of the procedure.
   void run_until(Nanos since_start);
   /// Runs until the panel has shown the last.

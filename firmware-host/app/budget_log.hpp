@@ -1,0 +1,26 @@
+// Tells of steps over their hard bound as they happen: each stage by name, and no stage more often than a
+// person can read.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "firmware-host/app/topology.hpp"
+
+namespace orcart {
+
+/// One thread, off the real-time path.
+class BudgetLog {
+ public:
+  static constexpr Nanos kEvery = 1s;  ///< at most a line a stage
+
+  /// Sentences about what is new since the last one of each stage; nothing while all are within their bounds.
+  std::vector<std::string> news(const std::array<StageLedger, kStageCount>& ledgers, Instant now);
+
+ private:
+  std::array<std::uint64_t, kStageCount> told_{};
+  std::array<Instant, kStageCount> next_{};
+};
+
+}  // namespace orcart
