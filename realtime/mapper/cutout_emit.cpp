@@ -30,7 +30,7 @@ HWY_INLINE Slot slot_of(CutoutMesh& mesh) {
           .z = mesh.z_mm.data(),
           .s = mesh.s.data(),
           .t = mesh.t.data(),
-          .corners = mesh.corners.data()->data(),
+          .corners = reinterpret_cast<std::uint32_t*>(mesh.corners.data()),  // of all, not of the first one
           .max_vertices = static_cast<std::uint32_t>(mesh.x_mm.size() - kEmitPadding),
           .max_triangles = static_cast<std::uint32_t>(mesh.corners.size() - kEmitPadding)};
 }
