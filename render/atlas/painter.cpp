@@ -22,10 +22,10 @@ constexpr int kCellTexels = 16;  // what is painted is drawn in squares of this 
 const Eigen::AlignedBox3f kEverything(Eigen::Vector3f::Constant(-1e9F), Eigen::Vector3f::Constant(1e9F));
 static_assert(kTileTexels % kCellTexels == 0);
 
-/// Half again as fine as the picture, in steps of 64.
+/// Half again as fine as a small picture, about as fine as one of 1080 rows; in steps of 64.
 int depth_size_for(const ScopeModel& scope) {
   const int wished = static_cast<int>(std::ceil(1.5 * 2 * scope.mask.radius_px / 64)) * 64;
-  return std::clamp(wished, 512, 1536);
+  return std::clamp(wished, 512, 1024);
 }
 
 }  // namespace

@@ -8,21 +8,21 @@ uniform float u_facing;      // +1 seen from outside, -1 from inside
 uniform float u_cos_cone, u_far_mm, u_cos_obliquity;
 uniform float u_depth_tangent, u_depth_near, u_depth_far;
 
-// What the scope sees along the line of sight of one depth texel, mm in front of the texel's own plane and mm behind it.
-// In front counts from no farther than `farthest_own`, behind from the plane itself: a steep plane is no edge. Depths are
-// reciprocal: there they are linear in what the texture holds and in the slopes.
-vec2 before_and_behind_mm(vec2 slope, vec3 plane, float farthest_own) {
-  float size = float(textureSize(u_depth, 0).x);
-  ivec2 at = ivec2((slope / u_depth_tangent * 0.5 + 0.5) * size);
-  vec2 centre = ((vec2(at) + 0.5) / size * 2.0 - 1.0) * u_depth_tangent;
-  float own = max(dot(plane, vec3(centre, 1.0)), 1e-6);
-  float d = texelFetch(u_depth, at, 0).r;
-  float seen = (u_depth_far - d * (u_depth_far - u_depth_near)) / (u_depth_near * u_depth_far);
-  return vec2(1.0 / max(own, farthest_own) - 1.0 / seen, 1.0 / seen - 1.0 / own);
+// The reciprocal depth of what the scope sees along the line of sight of the depth texel that holds `slope` (x), and of the
+// texel's own plane along the same line (y). Reciprocal depths are linear in what the texture holds and in the slopes.
+vec2 seen_and_own(vec2 slope, vec3 plane) {
+  float half_size = 0.5 * float(textureSize(u_depth, 0).x), texels_per_slope = half_size / u_depth_tangent;
+  ivec2 at = ivec2(slope * texels_per_slope + half_size);
+  vec2 centre = (vec2(at) + 0.5 - half_size) / texels_per_slope;
+  float seen = 1.0 / u_depth_near - texelFetch(u_depth, at, 0).r * (1.0 / u_depth_near - 1.0 / u_depth_far);
+  return vec2(seen, max(dot(plane, vec3(centre, 1.0)), 1e-6));
 }
 
+// Whether a is nearer than b by more than that: 1/b - 1/a > mm, of reciprocal depths and without dividing.
+bool nearer(float a, float b, float mm) { return a - b > mm * a * b; }
+
 // Whether something nearer, or farther, is seen within `pixels` beside the point: a picture that is blurred that far mixes
-// its colour in.
+// its colour in. A steep plane is no edge: nearer counts from no farther than a margin behind the point.
 bool beside_an_edge(vec3 p, vec3 plane, float pixels) {
   vec2 slope = p.xy / p.z;
   float reach = pixels * u_pixel_rad * (1.0 + dot(slope, slope));  // a barrel's pixels grow towards its edge
@@ -30,7 +30,8 @@ bool beside_an_edge(vec3 p, vec3 plane, float pixels) {
   float farthest_own = 1.0 / (p.z + margin);
   vec2 step_by = vec2(reach, 0.0);
   for (int i = 0; i < 8; ++i) {
-    if (any(greaterThan(before_and_behind_mm(slope + step_by, plane, farthest_own), vec2(margin)))) return true;
+    vec2 r = seen_and_own(slope + step_by, plane);
+    if (nearer(r.x, max(r.y, farthest_own), margin) || nearer(r.y, r.x, margin)) return true;
     step_by = 0.70710678 * vec2(step_by.x - step_by.y, step_by.x + step_by.y);
   }
   return false;
@@ -48,7 +49,8 @@ void main() {
   float cos_angle = -dot(normal, p) / distance_mm;
   if (weight <= 0.0) discard;
   vec3 plane = normal / dot(normal, p);  // dot(plane, ray) is the reciprocal depth of the plane along a ray of depth 1
-  if (before_and_behind_mm(p.xy / p.z, plane, 0.0).x > 0.04 + 0.002 * p.z) discard;  // something nearer hides it
+  vec2 r = seen_and_own(p.xy / p.z, plane);
+  if (nearer(r.x, r.y, 0.04 + 0.002 * p.z)) discard;  // hidden
   if (beside_an_edge(p, plane, 1.5)) discard;
   float level = picture_level(distance_mm, cos_angle);
   if (level > 0.0 && beside_an_edge(p, plane, 1.5 * exp2(level))) level = 0.0;  // rather grainy than of two colours
