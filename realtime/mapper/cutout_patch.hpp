@@ -53,8 +53,10 @@ struct CutoutPatch {
   std::uint32_t triangles_in_cone = 0;  ///< of this part: at least partly in the viewing cone
 
   explicit CutoutPatch(std::size_t capacity = 0) {
-    triangles.reserve(capacity);
-    occluders.reserve(capacity);
+    for (auto* const list : {&triangles, &occluders}) {
+      list->resize(capacity);  // touched, not only reserved: no step fetches a page
+      list->clear();
+    }
   }
 };
 

@@ -32,6 +32,7 @@ class PageFaults {
  private:
   static std::uint64_t counted() noexcept;
   bool next_site(const void*& at) noexcept;
+  void touch_ring() noexcept;
 
   std::uint64_t before_ = 0;
   int event_ = -1;

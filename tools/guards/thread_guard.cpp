@@ -131,7 +131,10 @@ void ThreadGuard::note(Ask ask, int system_call, const void* caller) noexcept {
     file(finding, {.origin = Origin::program, .library = 0});
   } else {
     std::array<void*, Finding::kDeepest + 8> stack;
+    take_faults();
     const auto depth = static_cast<std::size_t>(backtrace(stack.data(), static_cast<int>(stack.size())));
+    if (watch_faults_)
+      (void)faults_.take([](const void*) {});  // the unwinder's own, in tables it never read before
     const auto from = std::find(stack.begin(), stack.begin() + static_cast<std::ptrdiff_t>(depth), caller);
     const auto begin = from != stack.begin() + static_cast<std::ptrdiff_t>(depth)
                            ? static_cast<std::size_t>(from - stack.begin())
@@ -172,10 +175,16 @@ void ThreadGuard::file(const Finding& finding, Place place) noexcept {
   if (finding_count_ < findings_.size()) findings_[finding_count_++] = finding;
 }
 
-// A fault may have happened inside a system call, where the kernel tells no place.
 void ThreadGuard::count_faults() noexcept {
-  if (!watch_faults_ || !armed_) return;
+  if (!armed_) return;
   busy_ = true;
+  take_faults();
+  busy_ = false;
+}
+
+// A fault may have happened inside a system call, where the kernel tells no place.
+void ThreadGuard::take_faults() noexcept {
+  if (!watch_faults_) return;
   std::uint64_t placed = 0;
   const auto blame = [&](const void* at) {
     ++placed;
@@ -192,7 +201,6 @@ void ThreadGuard::count_faults() noexcept {
   };
   const std::uint64_t fresh = faults_.take(blame);
   while (placed < fresh) blame(nullptr);
-  busy_ = false;
 }
 
 }  // namespace orcart::guards

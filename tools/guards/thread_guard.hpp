@@ -97,6 +97,7 @@ class ThreadGuard {
   static constexpr std::size_t index(Ask ask) noexcept { return static_cast<std::size_t>(ask); }
   void file(const Finding& finding, Place place) noexcept;
   void count_faults() noexcept;
+  void take_faults() noexcept;  ///< while busy_
 
   std::string_view thread_;
   const CodeMap& code_;

@@ -1,0 +1,212 @@
+// Runs each step at its worst case for callgrind to count: one dump a step, named by it.
+#include <cstdio>
+#include <string>
+
+#include <hwy/nanobenchmark.h>
+#include <hwy/targets.h>
+
+#include "board/sim/picture_supply.hpp"
+#include "board/sim/simulated_frame_source.hpp"
+#include "board/sim/simulated_gpio.hpp"
+#include "firmware-host/app/topology.hpp"
+#include "firmware-host/stages/camera_stage.hpp"
+#include "firmware-host/stages/mapper_stage.hpp"
+#include "firmware-host/stages/pedal_stage.hpp"
+#include "firmware-host/stages/sync_stage.hpp"
+#include "firmware-host/stages/tracker_stage.hpp"
+#include "tests/firmware-host/tracker/tracker_rig.hpp"
+#include "tests/realtime/mapper/mapper_fixture.hpp"
+#include "tests/realtime/sync/sync_samples.hpp"
+
+#include <valgrind/callgrind.h>
+
+// Highway's library times its timer before main(), by an instruction that valgrind does not know on every
+// machine; this takes the place of it, and nobody asks for the answer.
+uint64_t hwy::platform::TimerResolution() {
+  return 1;
+}
+
+namespace orcart::testing {
+namespace {
+
+constexpr int kNoAvx2 = 77;
+
+std::unique_ptr<Lanes> lanes_of_the_cart() {
+  return std::make_unique<Lanes>(LaneDepths{.poses = kPoseQueueDepth,
+                                            .pedal = kPedalQueueDepth,
+                                            .frames = kFrameQueueDepth,
+                                            .orders = kPaintQueueDepth,
+                                            .patches = kPatchSlots});
+}
+
+template <class Step>
+void count(const char* name, int size, Step&& step) {
+  CALLGRIND_ZERO_STATS;
+  CALLGRIND_TOGGLE_COLLECT;
+  step();
+  CALLGRIND_TOGGLE_COLLECT;
+  CALLGRIND_DUMP_STATS_AT((std::string(name) + "-" + std::to_string(size)).c_str());
+}
+
+/// As many edges as one step takes, each with its bounce a millisecond apart.
+void pedal(int edges) {
+  SimulatedClock clock;
+  GpioScript script;
+  for (int i = 0; i < edges; ++i)
+    script.edges.push_back(
+        {.at = clock.now() + Nanos{1ms} * i, .kind = i % 2 == 0 ? EdgeKind::pressed : EdgeKind::released});
+  SimulatedGpio line(clock, script);
+  auto lanes = lanes_of_the_cart();
+  PedalStage stage(line, {}, *lanes);
+  clock.advance_by(100ms);
+  count("pedal", edges, [&] { (void)stage.step(clock.now()); });
+}
+
+/// A line whose far side is not counted.
+class Uncounted final : public ByteLink {
+ public:
+  explicit Uncounted(ByteLink& link) : link_(link) {}
+  void counting(bool now) { counting_ = now; }
+  Result<void, PortFault> write(std::span<const std::byte> bytes) noexcept override {
+    const Pause pause(counting_);
+    return link_.write(bytes);
+  }
+  Result<std::size_t, PortFault> read(std::span<std::byte> into) noexcept override {
+    const Pause pause(counting_);
+    return link_.read(into);
+  }
+  Instant last_arrival() const noexcept override { return link_.last_arrival(); }
+  void discard_input() noexcept override {
+    const Pause pause(counting_);
+    link_.discard_input();
+  }
+  Result<void, PortFault> set_line(const LineSettings& line) noexcept override {
+    return link_.set_line(line);
+  }
+  Result<void, PortFault> send_break() noexcept override { return link_.send_break(); }
+  Result<void, PortFault> reopen() noexcept override { return link_.reopen(); }
+  void wait(Instant deadline) noexcept override {
+    const Pause pause(counting_);
+    link_.wait(deadline);
+  }
+  Instant next_event() const noexcept override { return link_.next_event(); }
+
+ private:
+  class Pause {
+   public:
+    explicit Pause(bool counting) : counting_(counting) {
+      if (counting_) CALLGRIND_TOGGLE_COLLECT;
+    }
+    ~Pause() {
+      if (counting_) CALLGRIND_TOGGLE_COLLECT;
+    }
+    Pause(const Pause&) = delete;
+    Pause& operator=(const Pause&) = delete;
+
+   private:
+    bool counting_;
+  };
+  ByteLink& link_;
+  bool counting_ = false;
+};
+
+/// Polls of two tools and their replies, as long as they get.
+void tracker(int polls) {
+  CirclingTools motion;
+  SimulatedClock clock;
+  NdiEmulator device({}, motion);
+  SimulatedByteLink wire(device, clock);
+  Uncounted link(wire);
+  NdiDriver driver(two_tools(), link);
+  auto lanes = lanes_of_the_cart();
+  TrackerStage stage(driver, {}, *lanes);
+  const auto run_until_poll = [&](std::uint64_t last) {
+    while (driver.counters().replies < last && clock.now() < instant_from_nanos(0) + 3600s) {
+      link.wait(std::min(driver.next_due(), clock.now() + 1s));
+      (void)stage.step(clock.now());
+      for (PoseSample sample; lanes->poses.try_pop(sample);) {
+      }
+    }
+  };
+  run_until_poll(1000);  // the clock's fit is full
+  link.counting(true);
+  count("tracker", polls, [&] { run_until_poll(1000 + static_cast<std::uint64_t>(polls)); });
+}
+
+/// As many frames as there are buffers.
+void camera(int frames) {
+  SimulatedClock clock;
+  const ExposureTiming timing{.rate_hz = 100, .exposure = 1ms, .first = 1ms};
+  const MemoryPictures pictures(
+      {.width_px = 64, .height_px = 48, .format = PixelFormat::yuyv, .rate_hz = 100}, timing, 1000,
+      {std::vector<std::byte>(64 * 48 * 2)});
+  SimulatedFrameSource source(clock, pictures,
+                              {.start = clock.now(), .readout = 0ms, .buffers = kFrameBuffers});
+  auto lanes = lanes_of_the_cart();
+  CameraStage stage(source, clock, {.exposure = 1ms}, *lanes);
+  (void)source.start();
+  source.wait(clock.now() + 1ns);
+  clock.advance_by(3ms);  // a first one, which nothing is compared with
+  (void)stage.step(clock.now());
+  for (CapturedFrame first; lanes->frames.try_pop(first);) (void)lanes->frames_home.try_push(first.buffer);
+  (void)stage.step(clock.now());
+  clock.advance_by(10ms * frames);
+  count("camera", frames, [&] { (void)stage.step(clock.now()); });
+}
+
+/// A mapping thread that was held up: full queues of poses, the frames of all buffers, and a press for each.
+void match(int poses) {
+  auto lanes = lanes_of_the_cart();
+  SyncStage stage({.history = {.period = 16ms}, .matcher = {}, .selector = {}}, *lanes);
+  for (int i = 0; i < 128; ++i) {  // a history that is full already
+    (void)lanes->poses.try_push(sample_at(at_ms(16.0 * i)));
+    (void)stage.step(at_ms(16.0 * i + 10));
+  }
+  const double base = 16.0 * 128;
+  for (int i = 0; i < poses; ++i) (void)lanes->poses.try_push(sample_at(at_ms(base + 16.0 * i)));
+  for (int i = 0; i < poses * static_cast<int>(kFrameBuffers) / 64; ++i) {
+    (void)lanes->frames.try_push(frame_at(at_ms(base + 5 + 33.0 * i), static_cast<std::uint32_t>(i)));
+    (void)lanes->pedal.try_push({.kind = PedalEventKind::capture,
+                                 .unit = static_cast<std::uint32_t>(i) + 1,
+                                 .at = at_ms(base + 33.0 * i)});
+  }
+  count("match", poses, [&] { (void)stage.step(at_ms(base + 16.0 * 64 + 10)); });
+}
+
+/// A wall all of which lies in the cone, of 2 * cells^2 triangles (cells x cells / 2 for the half).
+void mapper(int rows) {
+  TriangleMesh wall = plane_grid(12, 100, 40);
+  wall.triangles.resize(static_cast<std::size_t>(rows) * 200);
+  const Surface surface = surface_of(std::move(wall));
+  const MapperLimits limits;
+  auto made = Mapper::create(surface, SeenFrom::outside, pinhole_scope(), limits);
+  if (!made) return;
+  CutoutPatch patch(patch_capacity(limits));
+  made->begin({}, TextureMode::perspective);
+  while (made->next(patch)) {
+  }
+  count("mapper", rows * 200, [&] {
+    made->begin({}, TextureMode::perspective);
+    while (made->next(patch)) {
+    }
+  });
+}
+
+}  // namespace
+}  // namespace orcart::testing
+
+int main() {
+  // One instruction set wherever it runs: the cutout picks its vector code by what the processor has, and so
+  // do Embree and the C library, to which valgrind shows a processor with AVX2 wherever there is one.
+  using namespace orcart::testing;
+  if ((hwy::SupportedTargets() & HWY_AVX2) == 0) return kNoAvx2;
+  hwy::SetSupportedTargetsForTest(HWY_AVX2);
+  CALLGRIND_STOP_INSTRUMENTATION;
+  CALLGRIND_START_INSTRUMENTATION;
+  for (const int edges : {16, 32}) pedal(edges);
+  for (const int polls : {50, 100}) tracker(polls);
+  for (const int frames : {5, 10}) camera(frames);
+  for (const int poses : {32, 64}) match(poses);
+  for (const int rows : {20, 40}) mapper(rows);
+  return 0;
+}

@@ -1,0 +1,47 @@
+// The guards on every real-time thread of a running cart: what our own code asks once it is warm, and what is
+// the driver's.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tools/latency/bench_cart.hpp"
+#include "tools/latency/guarded_threads.hpp"
+
+namespace orcart::testing {
+namespace {
+
+CartConfig small_demo() {
+  auto config = read_cart(std::filesystem::path(std::getenv("ORCART_SOURCE_DIR")) / "share/carts/demo.toml");
+  if (!config) ADD_FAILURE() << config.error().message;
+  config->texel_mm = 0.4;
+  config->panel = {.width_px = 640, .height_px = 480, .refresh_hz = 20};
+  config->camera.rate_hz = 15;
+  return *config;
+}
+
+TEST(RunningCart, AsksNothingOfHeapLocksKernelOrPagerOnceWarm) {
+  if (!guards::kGuardsWork) GTEST_SKIP() << "sanitizers bring a malloc of their own";
+  GuardedThreads threads;
+  auto made = BenchCart::create({.config = small_demo(), .duration_s = 3, .wrapper = &threads});
+  ASSERT_TRUE(made) << made.error().message;
+  BenchCart& bench = **made;
+  ASSERT_TRUE(bench.run([&] { threads.arm(); }, {}));
+  EXPECT_TRUE(threads.all_armed());
+  for (const std::string& fault : faults_of(threads)) ADD_FAILURE() << fault;
+  std::uint64_t painted = 0;
+  const auto& captures = bench.cart().captures();
+  for (std::size_t i = 0; i < captures.size(); ++i)
+    painted += captures.at(i).refusal == Refusal::none && captures.at(i).painted_at > bench.measured_from();
+  EXPECT_GE(painted, 1u);  // how many is the machine's to say
+  for (const guards::ThreadGuard* guard : threads.guards()) {
+    EXPECT_FALSE(guard->system_calls_refused()) << guard->thread();
+    EXPECT_GT(guard->steps(), 0u) << guard->thread();
+    if (guard->thread() != "render") {
+      EXPECT_EQ(guard->unplaced_faults(), 0u) << guard->thread();
+    }
+  }
+  for (const std::string& line : library_lines(threads)) std::printf("  %s\n", line.c_str());
+}
+
+}  // namespace
+}  // namespace orcart::testing
