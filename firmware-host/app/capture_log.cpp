@@ -16,7 +16,10 @@ std::string CaptureLog::news(const Ledger<CaptureRecord>& captures) {
   std::string lines;
   for (; told_ < captures.size(); ++told_) {
     const CaptureRecord& capture = captures.at(told_);
-    if (capture.refusal == Refusal::none) continue;
+    if (capture.refusal == Refusal::none) {
+      if (!capture.streaming) lines += "capture " + std::to_string(capture.unit) + " painted\n";
+      continue;
+    }
     lines += "capture " + std::to_string(capture.unit) +
              " painted nothing: " + std::string(word_for(capture.refusal)) +
              std::string(hint_for(capture.refusal)) + "\n";

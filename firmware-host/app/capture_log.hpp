@@ -1,4 +1,4 @@
-// Says of each press that painted nothing why it did not.
+// Says what became of each press: painted, or why not.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace orcart {
 
 class CaptureLog {
  public:
-  /// A line for each capture refused since the last call; empty where none was.
+  /// A line for each capture painted or refused since the last call, but for a stream's pictures.
   std::string news(const Ledger<CaptureRecord>& captures);
 
  private:
