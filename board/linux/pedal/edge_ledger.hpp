@@ -1,6 +1,7 @@
 // Counts a line's edges so that a lost one leaves a gap, whether the kernel numbers them or not.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -15,8 +16,8 @@ struct RawEdge {
   std::optional<std::uint32_t> number;  ///< the kernel's count of this line's edges, where it tells one
 };
 
-/// One thread; no memory. With the kernel's numbers a gap is a gap; without them two edges of one polarity
-/// mean that the one between them is missing.
+/// One thread; no memory. A gap in the kernel's numbers is a gap; and two edges of one polarity mean that the
+/// one between them is missing, numbered or not: the kernel numbers interrupts, and reads the level later.
 class EdgeLedger {
  public:
   /// The line was found at this level, by opening it (again). Numbers of the kernel begin anew.
@@ -34,9 +35,8 @@ class EdgeLedger {
     if (raw.number && number_) {
       step = *raw.number - *number_;
       if (step == 0 || step > kMostLost) step = 2;  // numbers that make no sense are a loss as well
-    } else if (known_ && raw.kind == level_) {
-      step = 2;
     }
+    if (known_ && raw.kind == level_) step = std::max(step, 2U);
     sequence_ += step + (lost_ && step == 1 ? 1 : 0);
     lost_ = false;
     known_ = true;

@@ -66,8 +66,8 @@ void GpioPedal::wait(Instant deadline) noexcept {
     if (pulse_end_) until = std::min(until, *pulse_end_);
     if (lines_) {
       until = std::min(until, check_at_);
-      lines_->wait(until);
-      if (clock_.now() < until) return;  // an edge, or a fault to be read
+      if (lines_->wait(until))
+        return;  // an edge, or a fault to be read, however late this thread comes to it
       if (clock_.now() >= check_at_) check_level();
       if (missed_ || !lines_) return end_pulse();
     } else {

@@ -120,11 +120,11 @@ class GpiodLines final : public RequestedLines {
       return tl::unexpected(PortFault::disconnected);
     return {};
   }
-  void wait(Instant deadline) noexcept override {
+  bool wait(Instant deadline) noexcept override {
     const std::int64_t left = std::max<std::int64_t>(0, (deadline - RealClock{}.now()).count());
     const timespec timeout{.tv_sec = left / 1'000'000'000, .tv_nsec = left % 1'000'000'000};
     pollfd watched{.fd = fd_, .events = POLLIN, .revents = 0};
-    ::ppoll(&watched, 1, &timeout, nullptr);
+    return ::ppoll(&watched, 1, &timeout, nullptr) > 0;
   }
 
  private:

@@ -40,8 +40,8 @@ class RequestedLines {
   virtual Result<EdgeKind, PortFault> level() noexcept = 0;
   /// unsupported where no trigger line was asked for.
   virtual Result<void, PortFault> set_trigger(TriggerLevel level) noexcept = 0;
-  /// Until there is an edge or the deadline.
-  virtual void wait(Instant deadline) noexcept = 0;
+  /// Until there is an edge, a fault or the deadline; true where read() has something to tell.
+  virtual bool wait(Instant deadline) noexcept = 0;
 };
 
 /// Whoever requests lines: libgpiod on a cart, a played one in tests.

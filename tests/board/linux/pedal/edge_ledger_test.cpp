@@ -43,6 +43,14 @@ TEST(EdgeLedger, FollowsTheKernelsNumbers) {
   EXPECT_EQ(ledger.accept(raw(kUp, 0)).sequence, 8u) << "and so is one that falls back";
 }
 
+TEST(EdgeLedger, LeavesAGapWhereTwoNumberedEdgesAreAlike) {
+  EdgeLedger ledger;
+  ledger.found_at(kUp);
+  EXPECT_EQ(ledger.accept(raw(kDown, 1)).sequence, 1u);
+  EXPECT_EQ(ledger.accept(raw(kDown, 2)).sequence, 3u);
+  EXPECT_EQ(ledger.accept(raw(kUp, 3)).sequence, 4u);
+}
+
 TEST(EdgeLedger, ShowsALossThatWasToldToIt) {
   EdgeLedger ledger;
   ledger.found_at(kUp);

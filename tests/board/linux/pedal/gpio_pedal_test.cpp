@@ -35,9 +35,10 @@ struct PlayedChip final : LineKeeper {
       chip.trigger_at = chip.clock.now();
       return {};
     }
-    void wait(Instant deadline) noexcept override {
+    bool wait(Instant deadline) noexcept override {
       const Instant next = chip.edges.empty() ? deadline : std::min(deadline, chip.edges.front().at);
-      chip.clock.advance_to(next);
+      chip.clock.advance_to(next + chip.held_up);
+      return chip.gone || (!chip.edges.empty() && chip.edges.front().at <= chip.clock.now());
     }
     PlayedChip& chip;
   };
@@ -53,6 +54,7 @@ struct PlayedChip final : LineKeeper {
   EdgeKind level = EdgeKind::released;
   TriggerLevel trigger = TriggerLevel::idle;
   Instant trigger_at{};
+  Nanos held_up{};  ///< how late a thread comes back from waiting
   bool gone = false;
   int held = 0, requests = 0;
 };
@@ -72,6 +74,19 @@ class GpioPedalTest : public ::testing::Test {
   PlayedChip chip{clock};
   std::unique_ptr<GpioPedal> pedal;
 };
+
+TEST_F(GpioPedalTest, MakesUpNoEdgeWhereTheTrueOneLiesThereAndItsThreadIsLate) {
+  const Instant at = clock.now() + 30ms;
+  press_at(at);
+  chip.level = EdgeKind::pressed;
+  chip.held_up = 300ms;
+  pedal->wait(clock.now() + 1s);
+  const auto edge = pedal->take_edge();
+  ASSERT_TRUE(edge);
+  EXPECT_EQ(edge->at, at);
+  EXPECT_EQ(edge->sequence, 1u);
+  EXPECT_FALSE(pedal->take_edge());
+}
 
 TEST_F(GpioPedalTest, WakesForAnEdgeAndKeepsItsStamp) {
   const Instant at = clock.now() + 30ms;
