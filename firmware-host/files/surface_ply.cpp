@@ -8,6 +8,7 @@
 #include "firmware-host/files/ply_body.hpp"
 #include "firmware-host/files/ply_header.hpp"
 #include "firmware-host/files/surface_formats.hpp"
+#include "firmware-host/files/vertex_merger.hpp"
 
 namespace orcart {
 
@@ -31,6 +32,7 @@ class PlyParser {
     for (const PlyElement& element : header_.elements) {
       if (auto read = read_element(element, body); !read) return tl::unexpected(read.error());
     }
+    if (is_split_) merge_equal_vertices(surface_.mesh);
     return std::move(surface_);
   }
 
@@ -87,6 +89,7 @@ class PlyParser {
       const int axis = property.count_type || property.name.size() != 1 ? -1 : property.name[0] - 'x';
       const bool known = axis >= 0 && axis < 3;
       axis_of.push_back(known ? axis : -1);
+      is_split_ = is_split_ || property.name == "texture_u" || property.name == "u" || property.name == "s";
       if (known) axes |= 1U << static_cast<unsigned>(axis);
     }
     if (axes != 7) return fail(name_ + ": its vertices lack x, y or z; all three are expected");
@@ -157,6 +160,7 @@ class PlyParser {
   PlyHeader header_;
   ParsedSurface surface_;
   std::vector<std::uint32_t> corners_;
+  bool is_split_ = false;  ///< vertices hold places in a picture, and are repeated along its seams
 };
 
 }  // namespace

@@ -1,49 +1,18 @@
 // STL: binary and ascii. Its triangles repeat their vertices; equal ones are merged exactly, in the order
 // first seen.
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <cstring>
-#include <unordered_map>
 
 #include "firmware-host/files/surface_formats.hpp"
 #include "firmware-host/files/text_cursor.hpp"
+#include "firmware-host/files/vertex_merger.hpp"
 
 namespace orcart {
 
 namespace {
 
 constexpr std::size_t kHeaderBytes = 84, kTriangleBytes = 50;
-
-/// Gives equal vertices one index; -0 and 0 are equal.
-class VertexMerger {
- public:
-  explicit VertexMerger(TriangleMesh& mesh) : mesh_(mesh) {}
-
-  std::uint32_t index_of(Eigen::Vector3f vertex) {
-    vertex.array() += 0.0F;  // -0 becomes 0
-    const Bits bits{std::bit_cast<std::uint32_t>(vertex.x()), std::bit_cast<std::uint32_t>(vertex.y()),
-                    std::bit_cast<std::uint32_t>(vertex.z())};
-    const auto [at, fresh] = index_.try_emplace(bits, static_cast<std::uint32_t>(mesh_.vertices_mm.size()));
-    if (fresh) mesh_.vertices_mm.push_back(vertex);
-    return at->second;
-  }
-
- private:
-  using Bits = std::array<std::uint32_t, 3>;
-  struct Mixed {
-    std::size_t operator()(const Bits& bits) const {
-      std::uint64_t mixed = 0;
-      for (const std::uint32_t word : bits) {
-        mixed = (mixed ^ word) * 0x9E3779B97F4A7C15U;
-        mixed ^= mixed >> 32U;
-      }
-      return mixed;
-    }
-  };
-  TriangleMesh& mesh_;
-  std::unordered_map<Bits, std::uint32_t, Mixed> index_;
-};
 
 Result<ParsedSurface> parse_binary(std::span<const std::byte> bytes, std::uint32_t count) {
   ParsedSurface surface;

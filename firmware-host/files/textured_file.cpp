@@ -11,6 +11,7 @@
 #include "firmware-host/files/picture_file.hpp"
 #include "firmware-host/files/surface_checks.hpp"
 #include "firmware-host/files/textured_glb.hpp"
+#include "firmware-host/files/textured_split.hpp"
 #include "firmware-host/files/whole_file.hpp"
 
 namespace orcart {
@@ -125,20 +126,20 @@ void append_bytes(std::string& text, const Value* values, std::size_t count) {
 }
 
 std::string ply_bytes(const TexturedSurface& textured, const std::string& png_name) {
-  const TriangleMesh& mesh = textured.surface.mesh;
-  std::string text = "ply\nformat binary_little_endian 1.0\n" +
-                     identity_comments("comment ", textured.surface) + "comment TextureFile " + png_name +
-                     "\nelement vertex " + std::to_string(mesh.vertices_mm.size()) +
-                     "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-                     std::to_string(mesh.triangles.size()) +
-                     "\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n"
-                     "end_header\n";
-  for (const Eigen::Vector3f& vertex : mesh.vertices_mm) append_bytes(text, vertex.data(), 3);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+  const SplitSurface split = split_along_seams(textured);
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\n" + identity_comments("comment ", textured.surface) +
+      "comment TextureFile " + png_name + "\nelement vertex " + std::to_string(split.vertex_of.size()) +
+      "\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float texture_u\nproperty float texture_v\nelement face " +
+      std::to_string(split.indices.size() / 3) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (std::size_t v = 0; v < split.vertex_of.size(); ++v) {
+    append_bytes(text, textured.surface.mesh.vertices_mm[split.vertex_of[v]].data(), 3);
+    append_bytes(text, split.places[v].data(), 2);
+  }
+  for (std::size_t i = 0; i < split.indices.size(); i += 3) {
     text += '\3';
-    append_bytes(text, mesh.triangles[t].data(), 3);
-    text += '\6';
-    for (const Eigen::Vector2f& uv : textured.corners_uv[t]) append_bytes(text, uv.data(), 2);
+    append_bytes(text, &split.indices[i], 3);
   }
   return text;
 }

@@ -22,10 +22,12 @@ struct TexturedSurface {
   std::span<const std::uint8_t> rgba;  ///< straight alpha, row 0 on top
 };
 
-/// `file` ends in .obj (NAME.mtl and NAME.png come beside it) or .ply (NAME.png; the places are the faces'
-/// `texcoord`, the picture is named in a TextureFile comment) or .glb (one file, see textured_glb.hpp). The
-/// picture is opaque: what has no paint is grey. Millimetres, LPS, said in a comment with the surface's
-/// identity. All files are made ready before the first appears under its name; on an error none does.
+/// `file` ends in .obj (NAME.mtl and NAME.png come beside it) or .ply (NAME.png, named in a
+/// TextureFile comment; the places are the vertices' texture_u and texture_v, which most programs know:
+/// vertices on a seam are repeated, and merged again by read_surface) or .glb (one file, see
+/// textured_glb.hpp). The picture is opaque: what has no paint is grey. Millimetres, LPS, said in a comment
+/// with the surface's identity. All files are made ready before the first appears under its name; on an error
+/// none does.
 Result<void> write_textured(const std::filesystem::path& file, const TexturedSurface& textured);
 
 }  // namespace orcart

@@ -2,27 +2,21 @@
 #include "firmware-host/files/textured_glb.hpp"
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "firmware-host/files/surface_checks.hpp"
+#include "firmware-host/files/textured_split.hpp"
 
 namespace orcart {
 namespace {
 
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertices = 34962, kIndices = 34963;
-
-struct SplitMesh {
-  std::vector<Eigen::Vector3f> positions_mm, normals;
-  std::vector<Eigen::Vector2f> places;  ///< origin top left
-  std::vector<std::uint32_t> indices;
-};
 
 std::vector<Eigen::Vector3f> vertex_normals(const TriangleMesh& mesh) {
   std::vector<Eigen::Vector3f> normals(mesh.vertices_mm.size(), Eigen::Vector3f::Zero());
@@ -36,40 +30,23 @@ std::vector<Eigen::Vector3f> vertex_normals(const TriangleMesh& mesh) {
   return normals;
 }
 
-/// A vertex and its place in the picture, bit for bit.
-struct Corner {
-  std::uint32_t vertex, u, v;
-  bool operator==(const Corner&) const = default;
-};
-struct CornerHash {
-  std::size_t operator()(const Corner& corner) const {
-    std::uint64_t mixed = corner.vertex * 0x9E3779B97F4A7C15ULL;
-    mixed = (mixed ^ corner.u) * 0xBF58476D1CE4E5B9ULL;
-    mixed = (mixed ^ corner.v) * 0x94D049BB133111EBULL;
-    return mixed ^ (mixed >> 31);
-  }
+struct GlbMesh {
+  std::vector<Eigen::Vector3f> positions_mm, normals;
+  std::vector<Eigen::Vector2f> places;  ///< origin top left
+  std::vector<std::uint32_t> indices;
 };
 
-SplitMesh split(const TexturedSurface& textured) {
+GlbMesh glb_mesh(const TexturedSurface& textured) {
   const TriangleMesh& mesh = textured.surface.mesh;
+  SplitSurface split = split_along_seams(textured);
   const std::vector<Eigen::Vector3f> normals = vertex_normals(mesh);
-  SplitMesh out;
-  out.indices.reserve(3 * mesh.triangles.size());
-  std::unordered_map<Corner, std::uint32_t, CornerHash> numbers;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t vertex = mesh.triangles[t][c];
-      const Eigen::Vector2f& uv = textured.corners_uv[t][c];
-      const auto [at, is_new] = numbers.try_emplace(
-          {vertex, std::bit_cast<std::uint32_t>(uv.x()), std::bit_cast<std::uint32_t>(uv.y())},
-          static_cast<std::uint32_t>(out.positions_mm.size()));
-      if (is_new) {
-        out.positions_mm.push_back(mesh.vertices_mm[vertex]);
-        out.normals.push_back(normals[vertex]);
-        out.places.emplace_back(uv.x(), 1 - uv.y());
-      }
-      out.indices.push_back(at->second);
-    }
+  GlbMesh out;
+  for (const std::uint32_t vertex : split.vertex_of) {
+    out.positions_mm.push_back(mesh.vertices_mm[vertex]);
+    out.normals.push_back(normals[vertex]);
+  }
+  for (const Eigen::Vector2f& place : split.places) out.places.emplace_back(place.x(), 1 - place.y());
+  out.indices = std::move(split.indices);
   return out;
 }
 
@@ -118,7 +95,7 @@ std::string accessor(int view, int component, std::size_t count, const char* typ
          R"(,"count":)" + std::to_string(count) + R"(,"type":")" + type + '"' + more + '}';
 }
 
-std::string description(const TexturedSurface& textured, const SplitMesh& mesh, const Chunk& chunk) {
+std::string description(const TexturedSurface& textured, const GlbMesh& mesh, const Chunk& chunk) {
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& p : mesh.positions_mm) box.extend(p);
   const SurfaceIdentity& identity = textured.surface.identity;
@@ -151,7 +128,7 @@ void append_word(std::string& bytes, std::size_t value) {
 }  // namespace
 
 std::string glb_bytes(const TexturedSurface& textured, std::string_view png) {
-  const SplitMesh mesh = split(textured);
+  const GlbMesh mesh = glb_mesh(textured);
   Chunk chunk;
   chunk.add_array(mesh.positions_mm, kVertices);
   chunk.add_array(mesh.normals, kVertices);

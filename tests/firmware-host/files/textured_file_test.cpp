@@ -76,17 +76,30 @@ TEST(TexturedFile, ItsSurfaceIsReadBackWithItsIdentity) {
   }
 }
 
-TEST(TexturedFile, APlyHoldsThePlacesOfEachFace) {
+TEST(TexturedFile, APlyHoldsAPlaceForEachVertex) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_textured(folder / "painted.ply", Painted().textured()));
   EXPECT_EQ(folder.count(), 2U);
   const std::string ply = text_of(folder / "painted.ply");
   EXPECT_NE(ply.find("comment TextureFile painted.png\n"), std::string::npos);
-  const std::size_t face = 1 + 12 + 1 + 24;
-  ASSERT_EQ(ply.size(), ply.find("end_header\n") + 11 + 4 * 12 + 2 * face);
-  std::array<float, 6> last{};
-  std::memcpy(last.data(), ply.data() + ply.size() - 24, 24);
-  EXPECT_EQ(last, (std::array<float, 6>{0, 0, 0.5f, 1, 0, 0.75f}));
+  const std::size_t vertices = ply.find("end_header\n") + 11, vertex = 20, face = 1 + 12;
+  ASSERT_EQ(ply.size(), vertices + 4 * vertex + 2 * face);
+  std::array<float, 2> third{};
+  std::memcpy(third.data(), ply.data() + vertices + 2 * vertex + 12, 8);
+  EXPECT_EQ(third, (std::array<float, 2>{0.5F, 1}));
+}
+
+TEST(TexturedFile, APlyRepeatsTheVerticesOfASeamAndIsReadBackWithoutIt) {
+  const TemporaryFolder folder;
+  Painted painted;
+  painted.corners_uv[1] = {
+      Eigen::Vector2f{0.5F, 0.5F}, {0.5F, 1}, {0, 0.75F}};  // the first corner has two places
+  ASSERT_TRUE(write_textured(folder / "painted.ply", painted.textured()));
+  EXPECT_NE(text_of(folder / "painted.ply").find("element vertex 5\n"), std::string::npos);
+  const auto back = read_surface(folder / "painted.ply");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->mesh.triangles, painted.surface.mesh.triangles);
+  EXPECT_EQ(back->identity.hash, painted.surface.identity.hash);
 }
 
 TEST(TexturedFile, LeavesNothingWhereItFails) {
