@@ -44,6 +44,7 @@ struct Watch {
   struct Site {
     std::string_view file;
     unsigned line = 0;
+    bool publishes = false;
     friend bool operator==(const Site&, const Site&) = default;
   };
   Site weakened;
@@ -55,7 +56,9 @@ Watch watch;  // one check at a time: Relacy itself has one context
 /// What the checker is told the order is.
 rl::memory_order order_at(std::memory_order order, const std::source_location& where) {
   if (order == std::memory_order_relaxed) return rl::mo_relaxed;
-  const Watch::Site site{.file = base_of(where.file_name()), .line = where.line()};
+  const Watch::Site site{.file = base_of(where.file_name()),
+                         .line = where.line(),
+                         .publishes = order == std::memory_order_release};
   auto* const end = watch.ordered.begin() + watch.count;
   if (std::find(watch.ordered.begin(), end, site) == end && watch.count < watch.ordered.size())
     watch.ordered[watch.count++] = site;
@@ -243,7 +246,8 @@ ModelVerdict run(std::uint64_t schedules) {
 ModelVerdict check_channel(Channel channel, std::uint64_t schedules,
                            const std::optional<AtomicSite>& weakened) {
   watch = {};
-  if (weakened) watch.weakened = {.file = weakened->file, .line = weakened->line};
+  if (weakened)
+    watch.weakened = {.file = weakened->file, .line = weakened->line, .publishes = weakened->publishes};
   ModelVerdict verdict;
   switch (channel) {
     case Channel::queue:
@@ -263,7 +267,9 @@ ModelVerdict check_channel(Channel channel, std::uint64_t schedules,
       break;
   }
   for (std::size_t i = 0; i < watch.count; ++i)
-    verdict.ordered.push_back({.file = std::string(watch.ordered[i].file), .line = watch.ordered[i].line});
+    verdict.ordered.push_back({.file = std::string(watch.ordered[i].file),
+                               .line = watch.ordered[i].line,
+                               .publishes = watch.ordered[i].publishes});
   return verdict;
 }
 

@@ -20,6 +20,7 @@ enum class Channel : std::uint8_t {
 struct AtomicSite {
   std::string file;  ///< without its folder
   unsigned line = 0;
+  bool publishes = false;  ///< its order is release
   friend bool operator==(const AtomicSite&, const AtomicSite&) = default;
 };
 

@@ -38,7 +38,8 @@ constexpr const char* kStyle =
     ".4em}.grid{display:grid;grid-template-columns:repeat(auto-fill,minmax(320px,1fr));"
     "gap:.8em}.card{background:#fff;border:1px solid #e4e0da;border-radius:6px;padding:.5em .8em}.card "
     "b{display:block}"
-    ".muted{color:#666;font-size:13px}.ok{color:#1d7a3a}.bad{color:#b03030;font-weight:600}"
+    ".verdict{font-size:13px}.muted{color:#666;font-size:13px}.ok{color:#1d7a3a}.bad{color:#b03030;font-"
+    "weight:600}"
     ".banner{background:#fff3d6;border:1px solid #e6c878;padding:.5em 1em;border-radius:6px;margin:.6em 0}"
     "svg{width:100%;height:auto}pre{font-size:12px;background:#f3f0ea;padding:.6em;overflow:auto}"
     "table{border-collapse:collapse;font-size:14px;width:100%}td,th{padding:.2em .5em;text-align:right;"
@@ -57,10 +58,11 @@ double x_of(double us) {
 /// `anchor`: which side of the line the label stands on (SVG's start, middle or end).
 std::string vertical(double us, const char* colour, const char* label, const char* anchor) {
   const double x = x_of(us);
+  const double shift = anchor[0] == 'e' ? -2 : anchor[0] == 's' ? 2 : 0;
   return text(
       "<line x1='%.1f' x2='%.1f' y1='%.0f' y2='%.0f' stroke='%s' stroke-dasharray='4 2'/>"
       "<text x='%.1f' y='%.0f' font-size='11' fill='%s' text-anchor='%s'>%s</text>",
-      x, x, kTop, kBottom, colour, x, kTop - 4, colour, anchor, label);
+      x, x, kTop, kBottom, colour, x + shift, kTop - 4, colour, anchor, label);
 }
 
 std::array<std::uint64_t, kBins> bins_of(const HistogramSnapshot& samples) {
@@ -79,7 +81,7 @@ std::array<std::uint64_t, kBins> bins_of(const HistogramSnapshot& samples) {
 std::string plot(const HistogramSnapshot& samples, const Budget& budget,
                  const HistogramSnapshot* beside = nullptr) {
   std::string out = text("<svg viewBox='0 0 %.0f 150' role='img'>", kWidth);
-  const char* labels[] = {"100 ns", "1 us", "10", "100", "1 ms", "10", "100", "1 s"};
+  const char* labels[] = {"0.1", "1 us", "10 us", "100 us", "1 ms", "10 ms", "100 ms", "1 s"};
   for (int i = 0; i < 8; ++i) {
     const double x = x_of(kLowestUs * std::pow(10.0, i));
     out += text(
@@ -125,9 +127,10 @@ std::string plot(const HistogramSnapshot& samples, const Budget& budget,
   if (samples.count() > 0) out += curve(samples, "#1c4f7c");
   if (beside != nullptr && beside->count() > 0) out += curve(*beside, "#c07a20");
   if (budget.p999 != Nanos::max()) {
-    const bool close = x_of(microseconds(budget.bound)) - x_of(microseconds(budget.p999)) < 34;
-    out += vertical(microseconds(budget.p999), "#b07a00", "budget", close ? "end" : "middle");
-    out += vertical(microseconds(budget.bound), "#b03030", "bound", close ? "start" : "middle");
+    const double p999 = microseconds(budget.p999), bound = microseconds(budget.bound);
+    const bool close = x_of(bound) - x_of(p999) < 40;
+    if (budget.p999 < budget.bound) out += vertical(p999, "#b07a00", "budget", close ? "end" : "middle");
+    out += vertical(bound, "#b03030", "bound", close && p999 < bound ? "start" : "middle");
   }
   return out + "</svg>";
 }
@@ -135,10 +138,10 @@ std::string plot(const HistogramSnapshot& samples, const Budget& budget,
 std::string card(const LatencyRow& row) {
   const Verdict verdict = verdict_of(row);
   const char* const kind = verdict == Verdict::within ? "ok" : verdict == Verdict::over ? "bad" : "muted";
-  const std::string word = "<span class=" + std::string(kind) + ">" + verdict_words(row) + "</span>";
+  const std::string word = "<div class='verdict " + std::string(kind) + "'>" + verdict_words(row) + "</div>";
   const auto median = row.samples.median();
   std::string out = "<div class=card><b>" + escaped(row.name) + "</b><span class=muted>" + escaped(row.note) +
-                    ".</span> " + word + plot(row.samples, row.budget);
+                    "</span>" + word + plot(row.samples, row.budget);
   out += text("<div class=muted>%llu samples", static_cast<unsigned long long>(row.samples.count()));
   if (median) out += "; p50 " + words_for(*median) + "; max " + words_for(row.samples.max());
   for (const double q : {0.99, 0.999}) out += "; " + percentile_words(row.samples, q);

@@ -19,6 +19,7 @@ enum class SeededBug : std::uint8_t {
   edge,     ///< the driver loses a pedal edge
   relaxed,  ///< the queue publishes with a relaxed store
 };
+inline constexpr int kSeededBugs = 7;
 std::string_view name_of(SeededBug bug);
 
 struct BugHunt {
