@@ -132,7 +132,8 @@ void Cart::State::build_stages() {
                         .matcher = {.tracker_against_video = config.tracker_against_video},
                         .selector = {},
                         .X_MR = patient.registration.X_MR,
-                        .X_SC = patient.scope.X_SC},
+                        .X_SC = patient.scope.X_SC,
+                        .painting_blocked = !patient.painting_blocked.empty()},
       lanes);
   mapping = std::make_unique<MapperStage>(
       *mapper, patches, setup.clock,
@@ -162,6 +163,7 @@ void Cart::State::build_stages() {
           .simulated = config.simulated(),
           .software_rendering = context.render_class() == RenderClass::software,
           .degraded = !lacks.empty(),
+          .painting_blocked = patient.painting_blocked,
           .submit_deadline = budget.dequeue_to_submitted.bound,
           .freshness = {.tracker_period = tracker_period, .video_period = period_of(config.camera.rate_hz)}});
 }

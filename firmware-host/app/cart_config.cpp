@@ -16,6 +16,14 @@ void read_files(TomlReader& reader, CartConfig& config) {
   config.texel_mm = surface.number("texel_mm", {.min = 0.05, .max = 2, .fallback = 0.2});
   const TomlSection scope = reader.section("scope");
   config.scope = scope.path("file");
+  if (scope.has("medium"))
+    config.passport.medium = scope.choice_of<Medium>(
+        "medium", {{"air", Medium::air}, {"water", Medium::water}, {"saline", Medium::saline}});
+  if (scope.has("serial")) config.passport.serial = scope.text("serial");
+  config.passport.most_residual_px =
+      scope.number("most_residual_px", {.min = 0.01, .max = 50, .fallback = 1.0});
+  config.passport.most_residual_mm =
+      scope.number("most_residual_mm", {.min = 0.01, .max = 50, .fallback = 2.0});
   const TomlSection registration = reader.section("registration");
   config.registration = registration.path("file");
 }

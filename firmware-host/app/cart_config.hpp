@@ -8,6 +8,7 @@
 
 #include "firmware-host/app/device_config.hpp"
 #include "firmware-host/app/tracker_config.hpp"
+#include "firmware-host/files/passport_check.hpp"
 #include "realtime/base/instant.hpp"
 #include "realtime/base/result.hpp"
 #include "realtime/geometry/triangle_mesh.hpp"
@@ -30,6 +31,7 @@ struct CartConfig {
   std::filesystem::path file;  ///< where this came from; relative paths in it start there
   std::string name = "cart";
   std::filesystem::path surface, scope, registration;
+  PassportWish passport;
   SeenFrom seen_from = SeenFrom::outside;
   double texel_mm = 0.2;
   TextureMode mode = TextureMode::perspective;

@@ -44,6 +44,12 @@ tl::expected<Options, int> read_options(int argc, char** argv) {
           std::map<std::string, ClockKind>{{"real", ClockKind::real}, {"simulated", ClockKind::simulated}}));
   app.add_option("--for", run_for,
                  "how long, e.g. 30s; without it until stopped or the simulated procedure ends");
+  app.add_option_function<Medium>(
+         "--medium", [&options](const Medium& medium) { options.medium = medium; },
+         "what the scope is used in: air, water or saline; painting is blocked where the passport says "
+         "another")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Medium>{
+          {"air", Medium::air}, {"water", Medium::water}, {"saline", Medium::saline}}));
   app.add_option("--session", options.session, "keep every capture in this *.orcart file");
   app.add_option("--report", options.report_dir,
                  "write pictures, report.html and report.json into this folder");

@@ -7,6 +7,7 @@
 
 #include "realtime/base/instant.hpp"
 #include "realtime/base/result.hpp"
+#include "realtime/optics/scope_model.hpp"
 
 namespace orcart {
 
@@ -18,6 +19,7 @@ struct Options {
   PanelKind panel = PanelKind::png;
   ClockKind clock = ClockKind::real;
   std::optional<Nanos> run_for;      ///< nothing: until SIGINT or SIGTERM, or the simulated procedure's end
+  std::optional<Medium> medium;      ///< what the scope is used in; over [scope] medium
   std::filesystem::path session;     ///< empty: nothing is kept
   std::filesystem::path report_dir;  ///< empty: no report
   std::filesystem::path trace;       ///< empty: nothing is traced

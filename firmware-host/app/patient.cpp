@@ -28,6 +28,13 @@ Result<Patient> read_patient(const CartConfig& config) {
                 "; use the mode that was calibrated or calibrate this one");
   }
 
+  if (auto fits = check_passport(patient.scope, config.passport, iso_today(), config.scope); !fits)
+    return tl::unexpected(fits.error());
+  // A procedure in which nothing is real has no medium to be asked for.
+  if (config.any_device() || config.passport.medium)
+    patient.painting_blocked = medium_objection(patient.scope.medium, config.passport.medium);
+  if (!patient.painting_blocked.empty()) patient.notes.push_back(patient.painting_blocked);
+
   auto registration = read_registration(config.registration);
   if (!registration) return tl::unexpected(registration.error());
   patient.registration = std::move(*registration);

@@ -18,10 +18,12 @@ struct Patient {
   ScopeModel scope;
   RegistrationFile registration;
   AtlasLayout layout;
+  std::string painting_blocked;    ///< why nothing may be painted; empty where it may
   std::vector<std::string> notes;  ///< sentences for the log: what was mended or noticed
 };
 
-/// Refuses a registration that belongs to another surface and a passport that does not fit the camera's size.
+/// Refuses a registration that belongs to another surface, and a passport that does not fit the camera's size
+/// or the scope, has expired or is beyond its limits. Another medium blocks painting alone.
 Result<Patient> read_patient(const CartConfig& config);
 
 }  // namespace orcart

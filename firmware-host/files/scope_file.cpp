@@ -111,6 +111,7 @@ Result<ScopeModel> read_scope(const std::filesystem::path& file, std::vector<std
   ScopeModel scope;
   const TomlSection top = reader.top();
   scope.name = top.text("name");
+  if (top.has("serial")) scope.serial = top.text("serial");
   scope.width_px = static_cast<int>(top.integer("width_px", {.min = 16, .max = 16'384}));
   scope.height_px = static_cast<int>(top.integer("height_px", {.min = 16, .max = 16'384}));
   scope.medium = top.choice_of<Medium>(

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "firmware-host/files/passport_check.hpp"
 #include "firmware-host/files/scope_file.hpp"
 #include "firmware-host/files/whole_file.hpp"
 
@@ -54,18 +55,6 @@ std::string list(std::string_view key, const double* values, std::size_t count) 
   return out + "]\n";
 }
 
-std::string_view word_for(Medium medium) {
-  switch (medium) {
-    case Medium::water:
-      return "water";
-    case Medium::saline:
-      return "saline";
-    case Medium::air:
-      break;
-  }
-  return "air";
-}
-
 struct LensWords {
   std::string_view model;
   std::size_t coefficients;
@@ -98,8 +87,10 @@ std::string lens_text(const Lens& lens) {
 Result<void> write_scope(const std::filesystem::path& file, const ScopeModel& scope) {
   std::string out =
       "# The calibration passport of a scope. Lengths in mm or px, angles in rad; poses are row-major 3x4.\n";
-  out += line("name", std::string_view(scope.name)) + line("width_px", scope.width_px) +
-         line("height_px", scope.height_px) + line("medium", word_for(scope.medium));
+  out += line("name", std::string_view(scope.name));
+  if (!scope.serial.empty()) out += line("serial", std::string_view(scope.serial));
+  out += line("width_px", scope.width_px) + line("height_px", scope.height_px) +
+         line("medium", word_for(scope.medium));
   if (!scope.calibrated_on.empty()) out += line("calibrated_on", std::string_view(scope.calibrated_on));
   if (!scope.expires_on.empty()) out += line("expires_on", std::string_view(scope.expires_on));
   out += "\n[lens]\n" + lens_text(scope.lens);

@@ -24,6 +24,8 @@ std::string_view words_for(Refusal refusal) {
     case Refusal::stamp_in_future:
     case Refusal::stamp_backwards:
       return "CAPTURE FAILED: the camera's time stamps are wrong";
+    case Refusal::blocked:
+      return "CAPTURE FAILED: painting is blocked";
     case Refusal::none:
       break;
   }
@@ -54,6 +56,7 @@ PanelStage::PanelStage(const Parts& parts, const PanelStageSettings& settings)
   screen_state_.status.simulated = settings.simulated;
   screen_state_.status.software_rendering = settings.software_rendering;
   screen_state_.status.degraded = settings.degraded;
+  screen_state_.status.painting_blocked = !settings.painting_blocked.empty();
 }
 
 StepReport PanelStage::step(Instant now) noexcept {
@@ -180,6 +183,7 @@ void PanelStage::choose_notice(Instant now) noexcept {
   if (status.video == Freshness::lost)
     return notice(Notice::Level::alarm, "NO LIVE VIDEO: check the camera's cable");
   if (status.tracker == Freshness::lost) return notice(Notice::Level::alarm, "TRACKER LOST: check its cable");
+  if (status.painting_blocked) return notice(Notice::Level::warning, settings_.painting_blocked);
   if (tracker_.infrared)
     return notice(Notice::Level::warning, "TOO MUCH INFRA-RED LIGHT: shade or move the lamp");
   if (!status.tool_seen) return notice(Notice::Level::warning, "TOOL NOT SEEN: clear its line of sight");

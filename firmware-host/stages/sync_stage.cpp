@@ -29,6 +29,12 @@ std::uint32_t SyncStage::take_presses() noexcept {
        ++count) {
     const bool streaming = event.kind == PedalEventKind::stream_begin;
     const CaptureRequest request{.unit = event.unit, .edge_at = event.at, .streaming = streaming};
+    if (settings_.painting_blocked &&
+        (event.kind == PedalEventKind::capture || event.kind == PedalEventKind::stream_begin)) {
+      (void)lanes_.orders.try_push(
+          {.kind = PaintOrderKind::fail, .request = request, .refusal = Refusal::blocked});
+      continue;
+    }
     switch (event.kind) {
       case PedalEventKind::capture:
         if (selector_.request(request)) {

@@ -14,8 +14,9 @@ struct SyncStageSettings {
   PoseHistorySettings history;
   FrameMatcherSettings matcher;
   CaptureSelectorSettings selector;
-  Pose<M, R> X_MR;  ///< registration
-  Pose<S, C> X_SC;  ///< hand-eye
+  Pose<M, R> X_MR;                ///< registration
+  Pose<S, C> X_SC;                ///< hand-eye
+  bool painting_blocked = false;  ///< every press fails, and says so
 };
 
 class SyncStage final : public Stage {

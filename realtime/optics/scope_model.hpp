@@ -29,6 +29,7 @@ struct FallOff {
 /// The passport. Immutable after loading.
 struct ScopeModel {
   std::string name;
+  std::string serial;  ///< as engraved on the scope; empty where it was not told
   int width_px = 0, height_px = 0;
   Lens lens;
   CircularMask mask;

@@ -15,6 +15,7 @@ enum class Refusal : std::uint8_t {
   stamp_in_future,  ///< the driver stamped it after it was dequeued
   stamp_backwards,  ///< the driver stamped it before its predecessor
   no_frame,         ///< of a capture: no frame came in its time
+  blocked,          ///< of a capture: the passport forbids painting
 };
 
 constexpr std::string_view word_for(Refusal refusal) {
@@ -35,6 +36,8 @@ constexpr std::string_view word_for(Refusal refusal) {
       return "frame stamps run backwards";
     case Refusal::no_frame:
       return "no frame";
+    case Refusal::blocked:
+      return "painting blocked";
   }
   return "unknown";
 }

@@ -24,6 +24,7 @@ struct Status {
   bool simulated = true;
   bool degraded = false;  ///< no real-time rights, slips: see notice
   bool software_rendering = false;
+  bool painting_blocked = false;      ///< the passport forbids it: see notice
   bool capture_acknowledged = false;  ///< a press arrived; its picture is not painted yet
   bool streaming = false;
   std::uint32_t captures = 0;

@@ -124,6 +124,7 @@ void draw_column(HudCanvas& canvas, const PanelLayout& layout, const Status& sta
   if (!status.tool_seen) column.pill("TOOL NOT SEEN", kWarn);
   if (!status.reference_seen) column.pill("REFERENCE NOT SEEN", kWarn);
   if (status.degraded) column.pill("DEGRADED", kWarn);
+  if (status.painting_blocked) column.pill("PAINTING BLOCKED", kWarn);
   column.rule();
   const Colour late = status.late_frames > 0 ? kWarn : kInk;
   column.figure("captures", Figure().whole(status.captures).view(), kInk);

@@ -105,6 +105,7 @@ void fill_passport(const CameraCommand& command, CameraCalibration& result) {
   ScopeModel& scope = result.scope;
   const BoardView& first = result.views.front();
   scope.name = command.name;
+  scope.serial = command.serial;
   scope.width_px = first.width_px, scope.height_px = first.height_px;
   scope.lens = result.fit.lens;
   scope.mask = result.mask.mask;

@@ -46,6 +46,28 @@ TEST(Patient, RefusesAPassportOfAnotherPictureSize) {
   EXPECT_NE(patient.error().message.find("1280x720"), std::string::npos) << patient.error().message;
 }
 
+TEST(Patient, AnotherMediumThanThePassportsBlocksPaintingAndSaysSo) {
+  CartConfig config = demo();
+  EXPECT_EQ(read_patient(config).value().painting_blocked, "");
+  config.passport.medium = Medium::air;
+  const auto patient = read_patient(config);
+  ASSERT_TRUE(patient) << patient.error().message;
+  EXPECT_NE(patient->painting_blocked.find("calibrated in saline, used in air"), std::string::npos)
+      << patient->painting_blocked;
+}
+
+TEST(Patient, RefusesAPassportThatHasExpired) {
+  const TemporaryFolder folder;
+  CartConfig config = demo();
+  const std::string text = text_of(config.scope);
+  config.scope = folder.write(
+      "old.toml", replaced(text, "calibrated_on = \"2026-11-20\"", "expires_on = \"2001-01-01\""));
+  const auto patient = read_patient(config);
+  ASSERT_FALSE(patient);
+  EXPECT_NE(patient.error().message.find("expired on 2001-01-01"), std::string::npos)
+      << patient.error().message;
+}
+
 TEST(Patient, RefusesToLookFromInsideAnOpenSurface) {
   const TemporaryFolder folder;
   CartConfig config = demo();

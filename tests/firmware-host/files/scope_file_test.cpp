@@ -88,6 +88,7 @@ TEST(ScopeFile, TheShippedRegistrationNamesTheShippedVentricle) {
 ScopeModel scope_with(LensModel model) {
   ScopeModel scope = *read_text(kPassport);
   scope.name = "a \"quoted\" name \\ with a\ttab";
+  scope.serial = "AB-12";
   scope.medium = Medium::saline;
   scope.calibrated_on = "2026-11-20";
   scope.lens.model = model;
@@ -119,6 +120,7 @@ TEST_P(EachLens, ComesBackAsItWasWritten) {
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_TRUE(notes.empty());
   EXPECT_EQ(back->name, scope.name);
+  EXPECT_EQ(back->serial, scope.serial);
   EXPECT_EQ(back->medium, scope.medium);
   EXPECT_EQ(back->calibrated_on, scope.calibrated_on);
   EXPECT_EQ(back->lens.model, scope.lens.model);

@@ -92,5 +92,23 @@ TEST_F(SyncStageTest, TellsWhereTheScopeIsNow) {
   EXPECT_NEAR(scope.X_MC.translation_mm.x(), x_mm_at(at_ms(199)), 1e-6);
 }
 
+TEST(SyncStageBlocked, FailsEveryPressAtOnceAndSelectsNothing) {
+  Lanes lanes{small_lanes()};
+  SyncStage stage{{.history = {.period = 16ms}, .painting_blocked = true}, lanes};
+  for (int ms = 0; ms < 200; ++ms) {
+    if (ms % 16 == 0) (void)lanes.poses.try_push(sample_at(at_ms(ms)));
+    if (ms == 50) (void)lanes.pedal.try_push({.kind = PedalEventKind::capture, .unit = 1, .at = at_ms(50)});
+    if (ms % 33 == 0) (void)lanes.frames.try_push(frame_at(at_ms(ms), static_cast<std::uint32_t>(ms / 33)));
+    (void)stage.step(at_ms(ms));
+  }
+  const auto orders = all_of(lanes.orders);
+  EXPECT_TRUE(all_of(lanes.selected).empty());
+  EXPECT_EQ(std::ranges::count(orders, PaintOrderKind::acknowledge, &PaintOrder::kind), 0);
+  EXPECT_EQ(std::ranges::count(orders, PaintOrderKind::show, &PaintOrder::kind), 7);
+  const auto failed = std::ranges::find(orders, PaintOrderKind::fail, &PaintOrder::kind);
+  ASSERT_NE(failed, orders.end());
+  EXPECT_EQ(failed->refusal, Refusal::blocked);
+}
+
 }  // namespace
 }  // namespace orcart::testing
