@@ -22,6 +22,8 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME orcart)
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "tools of the endoscope-painting cart
  Surfaces, calibration, registration, offline painting, reports and an emulated tracker.
  Research use; not a medical device.")
+# The demo's files, which `orcart evaluate` takes where it is told no others.
+set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS "orcartd")
 file(WRITE ${CMAKE_BINARY_DIR}/conffiles "/etc/default/orcart\n")
 file(CHMOD ${CMAKE_BINARY_DIR}/conffiles PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
 

@@ -1,10 +1,13 @@
 // orcart evaluate: the paper's Table 1, from one command.
 #include <unistd.h>
 
+#include <array>
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "tools/evaluate/evaluate_command.hpp"
+#include "tools/evaluate/share_folder.hpp"
 #include "tools/orcart/verbs.hpp"
 
 namespace orcart {
@@ -46,6 +49,27 @@ Result<void> take_noise(Arguments& arguments) {
   return {};
 }
 
+/// What was not told is the demo's.
+Result<void> take_demo_files(EvaluateCommand& command) {
+  const std::filesystem::path share = share_folder(this_program());
+  const std::array<std::pair<std::filesystem::path*, const char*>, 5> files{
+      {{&command.surface, "surfaces/ventricle.ply"},
+       {&command.scope, "scopes/neuro-2p7.toml"},
+       {&command.registration, "carts/demo-registration.toml"},
+       {&command.scope_rom, "tools/scope.rom"},
+       {&command.reference_rom, "tools/reference.rom"}}};
+  for (const auto& [file, name] : files) {
+    if (!file->empty()) continue;
+    if (share.empty())
+      return fail(
+          std::string("the demo's ") + name +
+          " is not installed beside this program; --surface, --scope, --registration, --scope-rom and "
+          "--reference-rom are accepted");
+    *file = share / name;
+  }
+  return {};
+}
+
 int run(Arguments& arguments) {
   const bool terminal = ::isatty(STDERR_FILENO) == 1;
   const auto bar = [&](const std::string& what, double done) {
@@ -56,7 +80,8 @@ int run(Arguments& arguments) {
                  "##############################", kWidth - full, "", 100 * done);
   };
   arguments.command.seen_from = arguments.seen_from == "outside" ? SeenFrom::outside : SeenFrom::inside;
-  const auto taken = take_noise(arguments);
+  auto taken = take_noise(arguments);
+  if (taken) taken = take_demo_files(arguments.command);
   const auto report = taken ? evaluate(arguments.command, bar) : tl::unexpected(taken.error());
   if (terminal) std::fputs("\r\033[K", stderr);
   if (!report) {
@@ -75,12 +100,6 @@ void add_evaluate(CLI::App& app, int& exit_code) {
   CLI::App* verb = app.add_subcommand("evaluate", "The paper's Table 1: tracking, tip and mapping errors");
   auto arguments = std::make_shared<Arguments>();
   EvaluateCommand& command = arguments->command;
-  const std::filesystem::path share = ORCART_SHARE;
-  command.surface = share / "surfaces/ventricle.ply";
-  command.scope = share / "scopes/neuro-2p7.toml";
-  command.registration = share / "carts/demo-registration.toml";
-  command.scope_rom = share / "tools/scope.rom";
-  command.reference_rom = share / "tools/reference.rom";
   verb->footer(kFooter);
   verb->add_option("--surface", command.surface, "a PLY, STL, OBJ or mz3 surface; the demo's unless told");
   verb->add_option("--scope", command.scope, "the calibration passport; the demo's unless told");
