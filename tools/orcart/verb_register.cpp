@@ -3,12 +3,16 @@
 #include <map>
 #include <memory>
 
+#include "firmware-host/files/picture_file.hpp"
 #include "firmware-host/files/scope_file.hpp"
 #include "firmware-host/files/surface_file.hpp"
+#include "realtime/geometry/ray_scene.hpp"
+#include "tools/mesh/mesh_pictures.hpp"
 #include "tools/orcart/verbs.hpp"
 #include "tools/registration/json_text.hpp"
 #include "tools/registration/register_points.hpp"
 #include "tools/registration/sequence_file.hpp"
+#include "tools/registration/surface_refine.hpp"
 
 namespace orcart {
 namespace {
@@ -26,6 +30,8 @@ struct Arguments {
   std::optional<Space> space;
   RegistrationTask task;
   std::vector<double> target, stylus_tip;
+  std::string surface_points, picture;
+  double surface_error_mm = 0.5;
   bool json = false;
 };
 
@@ -39,7 +45,85 @@ Result<std::vector<NamedPoint>> moving_points(const Arguments& arguments) {
       *sequence, {.tip_mm = {arguments.stylus_tip[0], arguments.stylus_tip[1], arguments.stylus_tip[2]}});
 }
 
-std::string answer_json(const Registration& r, const Eigen::Vector3d& target_mm) {
+/// What the surface adds: refinement by points on it, and the predicted error over all of it.
+struct OnSurface {
+  std::optional<SurfaceRefinement> refinement;
+  std::optional<SurfaceTre> tre;
+};
+
+std::string surface_json(const OnSurface& on) {
+  std::string out;
+  if (on.refinement)
+    out += ",\n \"surface_points\": {\"used\": " + std::to_string(on.refinement->used) +
+           ", \"left_out\": " + std::to_string(on.refinement->left_out) +
+           ", \"before_mm\": " + json::number(on.refinement->before_mm) +
+           ", \"after_mm\": " + json::number(on.refinement->after_mm) +
+           ", \"moved_mm\": " + json::number(on.refinement->moved_mm) + "}";
+  if (on.tre)
+    out += ",\n \"surface_tre\": {\"mean_mm\": " + json::number(on.tre->mean_mm) +
+           ", \"p95_mm\": " + json::number(on.tre->p95_mm) +
+           ", \"max_mm\": " + json::number(on.tre->worst_mm) +
+           ", \"max_at_mm\": " + json::numbers(on.tre->worst_at_mm) + "}";
+  return out;
+}
+
+std::string surface_text(const OnSurface& on) {
+  std::string out;
+  if (on.refinement)
+    out += json::format(
+        "surface points: %zu used, %zu far off left out; %.2f mm RMS from the surface, %.2f before; the "
+        "fiducials' "
+        "middle moved by %.2f mm\n",
+        on.refinement->used, on.refinement->left_out, on.refinement->after_mm, on.refinement->before_mm,
+        on.refinement->moved_mm);
+  if (on.tre)
+    out += json::format("over the surface: mean %.2f, p95 %.2f, at most %.2f mm RMS at %.1f %.1f %.1f\n",
+                        on.tre->mean_mm, on.tre->p95_mm, on.tre->worst_mm, on.tre->worst_at_mm.x(),
+                        on.tre->worst_at_mm.y(), on.tre->worst_at_mm.z());
+  return out;
+}
+
+/// The surface from two sides, coloured by the predicted error: green 0, yellow half, red `worst_mm`.
+Result<void> draw_tre(const Registration& registration, const TriangleMesh& mesh, double worst_mm,
+                      const std::filesystem::path& file) {
+  const auto rays = RayScene::create(mesh);
+  if (!rays) return tl::unexpected(rays.error());
+  const MeshColour colour = [&](const RayHit&, const Eigen::Vector3f& place) {
+    const auto part = static_cast<float>(std::clamp(
+        predicted_tre_mm(registration, place.cast<double>()) / std::max(1e-9, worst_mm), 0.0, 1.0));
+    return Eigen::Vector3f(std::min(1.0F, 2 * part), std::min(1.0F, 2 - 2 * part), 0.15F);
+  };
+  const Picture left = draw_mesh(mesh, *rays, {.from = {1, 0, 0}}, colour),
+                front = draw_mesh(mesh, *rays, {.from = {0, -1, 0}}, colour);
+  Picture both{.width_px = left.width_px + front.width_px, .height_px = left.height_px};
+  for (int y = 0; y < both.height_px; ++y)
+    for (const Picture* one : {&left, &front}) {
+      const auto row = static_cast<std::ptrdiff_t>(4) * one->width_px;
+      both.rgba.insert(both.rgba.end(), one->rgba.begin() + y * row, one->rgba.begin() + (y + 1) * row);
+    }
+  return write_png(file, both.width_px, both.height_px, both.rgba);
+}
+
+Result<OnSurface> use_surface(const Arguments& arguments, const TriangleMesh& mesh,
+                              Registration& registration) {
+  OnSurface on;
+  if (!arguments.surface_points.empty()) {
+    const auto points = read_points(arguments.surface_points);
+    if (!points) return tl::unexpected(points.error());
+    SurfaceTask task{.error_mm = arguments.surface_error_mm};
+    for (const NamedPoint& point : *points) task.points_R_mm.push_back(point.mm);
+    const auto refinement = refine_on_surface(registration, mesh, task);
+    if (!refinement) return fail(arguments.surface_points + ": " + refinement.error().message);
+    on.refinement = *refinement;
+  }
+  on.tre = tre_over_surface(registration, mesh);
+  if (arguments.picture.empty()) return on;
+  if (auto drawn = draw_tre(registration, mesh, on.tre->worst_mm, arguments.picture); !drawn)
+    return tl::unexpected(drawn.error());
+  return on;
+}
+
+std::string answer_json(const Registration& r, const Eigen::Vector3d& target_mm, const OnSurface& on) {
   std::vector<std::string> points, notes;
   for (const RegisteredPoint& p : r.points)
     points.push_back("{\"fixed\": " + json::text(p.fixed) + ", \"moving\": " + json::text(p.moving) +
@@ -49,11 +133,11 @@ std::string answer_json(const Registration& r, const Eigen::Vector3d& target_mm)
          ", \"fle_mm\": " + json::number(r.fle_mm) +
          ", \"predicted_tre_mm\": " + json::number(predicted_tre_mm(r, target_mm)) +
          ", \"target_mm\": " + json::numbers(target_mm) +
-         ", \"outlier\": " + (r.outlier.empty() ? "null" : json::text(r.outlier)) +
+         ", \"outlier\": " + (r.outlier.empty() ? "null" : json::text(r.outlier)) + surface_json(on) +
          ",\n \"points\": " + json::list(points) + ",\n \"notes\": " + json::list(notes) + "}\n";
 }
 
-std::string answer_text(const Registration& r, const Eigen::Vector3d& target_mm) {
+std::string answer_text(const Registration& r, const Eigen::Vector3d& target_mm, const OnSurface& on) {
   std::string out =
       json::format("FRE %.4f mm RMS over %zu points (a test for outliers, not the error at the target)\n",
                    r.fre_mm, r.points.size());
@@ -63,6 +147,7 @@ std::string answer_text(const Registration& r, const Eigen::Vector3d& target_mm)
       "expected error at %.1f %.1f %.1f: %.2f mm RMS, from a declared fiducial error of %.2f mm; rigid error "
       "only, tissue shifts\n",
       target_mm.x(), target_mm.y(), target_mm.z(), predicted_tre_mm(r, target_mm), r.fle_mm);
+  out += surface_text(on);
   for (const std::string& note : r.notes) out += "note: " + note + "\n";
   return out;
 }
@@ -74,24 +159,32 @@ Result<void> run(Arguments& arguments) {
   if (!moving) return tl::unexpected(moving.error());
   arguments.task.fixed = std::move(*fixed);
   arguments.task.moving = std::move(*moving);
-  const auto registration = register_points(arguments.task);
+  auto registration = register_points(arguments.task);
   if (!registration) return fail(arguments.moving + ": " + registration.error().message);
-  RegistrationFile file{
-      .X_MR = registration->X_MR, .surface_hash = "unstated", .fre_mm = registration->fre_mm};
+  if (arguments.surface.empty() && !(arguments.surface_points.empty() && arguments.picture.empty()))
+    return fail("--surface-points and --picture belong to a surface; --surface is wanted too");
+  RegistrationFile file{.surface_hash = "unstated"};
+  OnSurface on;
   Eigen::Vector3d target = registration->centroid_mm;
   if (!arguments.surface.empty()) {
     const auto surface = read_surface(arguments.surface);
     if (!surface) return tl::unexpected(surface.error());
     file.surface_hash = surface->identity.hash;
+    auto used = use_surface(arguments, surface->mesh, *registration);
+    if (!used) return tl::unexpected(used.error());
+    on = *used;
     target.setZero();
     for (const auto& vertex : surface->mesh.vertices_mm)
       target += vertex.cast<double>() / static_cast<double>(surface->mesh.vertices_mm.size());
   }
   if (arguments.target.size() == 3) target = {arguments.target[0], arguments.target[1], arguments.target[2]};
+  file.X_MR = registration->X_MR;
+  file.fre_mm = registration->fre_mm;
   file.predicted_tre_mm = predicted_tre_mm(*registration, target);
   if (auto written = write_registration(arguments.out, file); !written) return written;
   std::fputs(
-      (arguments.json ? answer_json(*registration, target) : answer_text(*registration, target)).c_str(),
+      (arguments.json ? answer_json(*registration, target, on) : answer_text(*registration, target, on))
+          .c_str(),
       stdout);
   return {};
 }
@@ -130,6 +223,14 @@ void add_register(CLI::App& app, int& exit_code) {
       ->expected(3);
   verb->add_option("--surface", arguments->surface,
                    "the surface that the registration belongs to; its hash is written");
+  verb->add_option(
+      "--surface-points", arguments->surface_points,
+      "points touched on the surface, in the reference's space: the registration is refined with them");
+  verb->add_option("--surface-error", arguments->surface_error_mm,
+                   "standard deviation of their distance from the surface, mm")
+      ->check(CLI::Range(0.01, 20.0))
+      ->capture_default_str();
+  verb->add_option("--picture", arguments->picture, "a PNG of the surface, coloured by the expected error");
   verb->add_option("--out", arguments->out, "registration.toml")->required();
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   verb->callback([arguments, &exit_code] {

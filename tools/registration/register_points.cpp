@@ -172,6 +172,7 @@ Result<Registration> register_points(const RegistrationTask& task) {
         {.fixed = pairs->fixed_names[i],
          .moving = pairs->moving_names[i],
          .fixed_mm = pairs->fixed_mm[i],
+         .moving_mm = pairs->moving_mm[i],
          .error_mm =
              (fit->rotation * pairs->moving_mm[i] + fit->translation_mm - pairs->fixed_mm[i]).norm()});
   measure_shape(*pairs, result);
@@ -179,6 +180,12 @@ Result<Registration> register_points(const RegistrationTask& task) {
 }
 
 double predicted_tre_mm(const Registration& registration, const Eigen::Vector3d& target_mm) {
+  if (registration.pose_covariance) {
+    const Eigen::Vector3d arm = target_mm - registration.centroid_mm;
+    Eigen::Matrix<double, 3, 6> motion;
+    motion << 0, arm.z(), -arm.y(), 1, 0, 0, -arm.z(), 0, arm.x(), 0, 1, 0, arm.y(), -arm.x(), 0, 0, 0, 1;
+    return std::sqrt((motion * *registration.pose_covariance * motion.transpose()).trace());
+  }
   const Eigen::Vector3d from = registration.axes.transpose() * (target_mm - registration.centroid_mm);
   double sum = 0;
   for (Eigen::Index k = 0; k < 3; ++k) {

@@ -22,6 +22,7 @@ struct RegistrationTask {
 struct RegisteredPoint {
   std::string fixed, moving;
   Eigen::Vector3d fixed_mm = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moving_mm = Eigen::Vector3d::Zero();  ///< in R
   double error_mm = 0;
 };
 
@@ -35,6 +36,9 @@ struct Registration {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();     ///< principal axes of the fiducials, columns
   Eigen::Vector3d spread2_mm2 = Eigen::Vector3d::Ones();  ///< mean squared distance from each axis
   double fle_mm = 0;
+  /// Of the pose's turn and shift about centroid_mm, in M; where surface points were used beside the
+  /// fiducials.
+  std::optional<Eigen::Matrix<double, 6, 6>> pose_covariance;
   std::vector<std::string> notes;  ///< e.g. what a nearly flat set does to the error beside it
 };
 
@@ -42,7 +46,7 @@ struct Registration {
 Result<Registration> register_points(const RegistrationTask& task);
 
 /// Expected target registration error, RMS, at a place of the mesh (Fitzpatrick, West and Maurer 1998,
-/// equation 46).
+/// equation 46); by the pose's covariance where there is one.
 double predicted_tre_mm(const Registration& registration, const Eigen::Vector3d& target_mm);
 
 }  // namespace orcart
