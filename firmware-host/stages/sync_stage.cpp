@@ -31,8 +31,7 @@ std::uint32_t SyncStage::take_presses() noexcept {
     const CaptureRequest request{.unit = event.unit, .edge_at = event.at, .streaming = streaming};
     if (settings_.painting_blocked &&
         (event.kind == PedalEventKind::capture || event.kind == PedalEventKind::stream_begin)) {
-      (void)lanes_.orders.try_push(
-          {.kind = PaintOrderKind::fail, .request = request, .refusal = Refusal::blocked});
+      fail(request, Refusal::blocked);
       continue;
     }
     switch (event.kind) {

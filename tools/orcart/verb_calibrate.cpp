@@ -80,6 +80,7 @@ void add_camera(CLI::App& calibrate_verb, int& exit_code) {
                    "what the pictures were taken in: air (the default), water or saline")
       ->transform(CLI::CheckedTransformer(media));
   verb->add_option("--name", command.name, "the scope's name in its passport")->capture_default_str();
+  verb->add_option("--serial", command.serial, "the scope's serial number, which the cart compares");
   verb->add_option("--distances", command.distances_mm,
                    "mm, one a picture, known but for a common offset: 10,20,30")
       ->delimiter(',');
@@ -99,6 +100,8 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   verb->require_subcommand(1);
   add_camera(*verb, exit_code);
   add_hand_eye(*verb, exit_code);
+  add_medium(*verb, exit_code);
+  add_tip(*verb, exit_code);
 }
 
 void add_rectify(CLI::App& app, int& exit_code) {

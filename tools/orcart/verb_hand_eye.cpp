@@ -1,4 +1,6 @@
 // orcart calibrate handeye: where the camera sits on its marker.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -24,7 +26,25 @@ struct Arguments {
   bool json = false;
 };
 
+/// The views left out as the paper states its errors: light of the board's origin, painted by the others.
+struct MappingError {
+  double mean_mm = 0, sd_mm = 0, worst_mm = 0;
+};
+MappingError mapping_error(const std::vector<double>& left_out_mm) {
+  MappingError error;
+  const auto count = static_cast<double>(left_out_mm.size());
+  for (const double off : left_out_mm) {
+    error.mean_mm += off / count;
+    error.worst_mm = std::max(error.worst_mm, off);
+  }
+  for (const double off : left_out_mm)
+    error.sd_mm += (off - error.mean_mm) * (off - error.mean_mm) / std::max(1.0, count - 1);
+  error.sd_mm = std::sqrt(error.sd_mm);
+  return error;
+}
+
 std::string answer(const HandEyeCalibration& c, bool as_json) {
+  const MappingError mapping = mapping_error(c.left_out_mm);
   const Eigen::Vector3d &closed = c.closed_form.X_SC.translation_mm, &refined = c.refined.X_SC.translation_mm;
   std::vector<std::string> notes, views;
   for (const std::string& note : c.notes) notes.push_back(json::text(note));
@@ -39,6 +59,9 @@ std::string answer(const HandEyeCalibration& c, bool as_json) {
            ", \"closed_form_scatter_mm\": " + json::number(c.closed_form.scatter_mm) +
            ", \"leave_one_out_mm\": " + json::number(c.leave_one_out_mm) +
            ", \"tracker_floor_mm\": " + json::number(c.floor_mm) +
+           ",\n \"mapping_error\": {\"mean_mm\": " + json::number(mapping.mean_mm) +
+           ", \"sd_mm\": " + json::number(mapping.sd_mm) + ", \"max_mm\": " + json::number(mapping.worst_mm) +
+           ", \"n\": " + std::to_string(c.left_out_mm.size()) + "}" +
            ", \"rms_px\": " + json::number(c.refined.rms_px) + ",\n \"views\": " + json::list(views) +
            ",\n \"notes\": " + json::list(notes) + "}\n";
   std::string out =
@@ -50,6 +73,9 @@ std::string answer(const HandEyeCalibration& c, bool as_json) {
       "turn %.3f mm\n",
       refined.x(), refined.y(), refined.z(), c.refined.scatter_mm, c.refined.rms_px, c.leave_one_out_mm);
   out += json::format("the tracker's declared noise alone would scatter it by %.3f mm\n", c.floor_mm);
+  if (!c.left_out_mm.empty())
+    out += json::format("as a mapping error of one point: mean %.2f, s.d. %.2f, max %.2f mm, n %zu\n",
+                        mapping.mean_mm, mapping.sd_mm, mapping.worst_mm, c.left_out_mm.size());
   for (std::size_t i = 0; i < c.names.size(); ++i)
     out += json::format("  %-32s %.3f mm", c.names[i].c_str(), c.refined.scatters_mm[i]) +
            (i < c.left_out_mm.size() ? json::format(", left out %.3f mm\n", c.left_out_mm[i]) : "\n");

@@ -17,9 +17,11 @@ void add_latency(CLI::App& app, int& exit_code);
 void add_paint(CLI::App& app, int& exit_code);
 void add_probe(CLI::App& app, int& exit_code);
 void add_hand_eye(CLI::App& calibrate, int& exit_code);
+void add_medium(CLI::App& calibrate, int& exit_code);
 void add_pivot(CLI::App& app, int& exit_code);
 void add_rectify(CLI::App& app, int& exit_code);
 void add_register(CLI::App& app, int& exit_code);
+void add_tip(CLI::App& calibrate, int& exit_code);
 void add_surface(CLI::App& app, int& exit_code);
 
 }  // namespace orcart

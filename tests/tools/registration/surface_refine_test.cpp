@@ -46,7 +46,7 @@ struct Scene {
 Scene scene(std::mt19937& random) {
   std::normal_distribution<double> noise(0, 1);
   std::uniform_real_distribution<double> any(-1, 1);
-  const auto shaken = [&](double sigma) {
+  const auto shaken = [&](double sigma) -> Eigen::Vector3d {
     return sigma * Eigen::Vector3d(noise(random), noise(random), noise(random));
   };
   Scene made;

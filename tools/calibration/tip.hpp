@@ -1,0 +1,51 @@
+// Where the scope's distal window lies before the optical centre, from distances to a board that are known:
+// the paper's tip localisation, and its error.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "realtime/optics/scope_model.hpp"
+#include "tools/calibration/camera_command.hpp"
+
+namespace orcart {
+
+/// One view of the board's plane.
+struct TipView {
+  std::string name;
+  double known_mm = 0;  ///< from the window to the board, along the optical axis, as measured by hand
+  double camera_mm =
+      0;  ///< from the optical centre to the board, along the optical axis, as the camera sees it
+};
+
+struct TipFit {
+  double window_mm = 0;     ///< of E before C on the optical axis: X_CE's z
+  double deviation_mm = 0;  ///< standard deviation of it
+  double scale = 1;         ///< by which the camera's distances grow faster than the known ones
+  double scale_deviation = 0;
+  std::vector<double> errors_mm;  ///< of each view's distance with the window placed by all other views
+  double mean_mm = 0, sd_mm = 0, worst_mm = 0;  ///< of the errors' sizes
+  std::vector<std::string> notes;
+};
+
+/// Where the optical axis meets the board's plane, mm from C. Refuses a board seen edge on.
+Result<double> axis_distance_mm(const Pose<C, B>& X_CB);
+
+/// Refuses fewer than three views, one distance only, metres, and distances that grow otherwise than the
+/// camera's (a board of another square size).
+Result<TipFit> fit_tip(const std::vector<TipView>& views);
+
+struct TipCommand {
+  std::vector<std::filesystem::path> images;
+  std::vector<double> distances_mm;  ///< one a picture
+  Pattern pattern;
+};
+struct TipCalibration {
+  ScopeModel scope;  ///< the passport given, with X_CE
+  std::vector<TipView> views;
+  TipFit fit;
+};
+Result<TipCalibration> calibrate_tip(const TipCommand& command, const ScopeModel& scope,
+                                     const Progress& progress);
+
+}  // namespace orcart
