@@ -19,7 +19,7 @@ struct CameraCommand {
   LensModel model = LensModel::brown;
   Medium medium = Medium::air;
   std::string name = "scope";
-  std::string serial;  ///< as engraved; empty where it is not told
+  std::string serial;                ///< as engraved; empty where it is not told
   std::vector<double> distances_mm;  ///< empty, or one an image
   int valid_days = 365;
 };
