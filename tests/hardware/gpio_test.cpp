@@ -245,4 +245,40 @@ TEST(Keyboard, IsAPedalThatIsGrabbedAndComesBack) {
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Linux, GpioContract, GpioSimRig);
 
+std::string first_line_of(const std::string& file) {
+  std::string line;
+  std::getline(std::ifstream(file) >> std::ws, line);
+  return line;
+}
+
+/// ORCART_TEST_GPIO_CONFIG is the chip's folder in gpio-sim's configfs. The last test: the chip may come back
+/// under another number.
+TEST(GpioChip, IsUsedAgainAfterItWasRemovedAndPutBack) {
+  const auto config = device_named("ORCART_TEST_GPIO_CONFIG");
+  if (!config) GTEST_SKIP() << not_set("ORCART_TEST_GPIO_CONFIG");
+  RealClock clock;
+  auto pedal = GpioPedal::open({.chip = "cart", .line = "pedal"}, clock);
+  ASSERT_TRUE(pedal) << pedal.error().message;
+  const auto waits_for = [&](PortFault wanted) {
+    const Instant end = clock.now() + 5s;
+    auto edge = (*pedal)->take_edge();
+    while ((edge || edge.error() != wanted) && clock.now() < end) {
+      (*pedal)->wait(clock.now() + 20ms);
+      edge = (*pedal)->take_edge();
+    }
+    return !edge && edge.error() == wanted;
+  };
+  std::ofstream(*config + "/live") << 0 << std::flush;
+  EXPECT_TRUE(waits_for(PortFault::disconnected));
+  std::ofstream(*config + "/live") << 1 << std::flush;
+  ASSERT_TRUE(waits_for(PortFault::nothing_yet));
+  std::ofstream("/sys/devices/platform/" + first_line_of(*config + "/dev_name") + "/" +
+                first_line_of(*config + "/bank0/chip_name") + "/sim_gpio4/pull")
+      << "pull-up" << std::flush;
+  (*pedal)->wait(clock.now() + 5s);
+  const auto edge = (*pedal)->take_edge();
+  ASSERT_TRUE(edge) << word_for(edge.error());
+  EXPECT_EQ(edge->kind, EdgeKind::pressed);
+}
+
 }  // namespace orcart::testing

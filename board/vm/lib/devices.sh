@@ -8,13 +8,13 @@ device_arguments() {
     tracker)
       start_emulator
       machine+=(-chardev "socket,id=tracker,path=$run_dir/tracker.socket,server=off,reconnect=1")
-      add_usb && machine+=(-device usb-serial,chardev=tracker,id=tracker,always-plugged=off)
+      add_usb && machine+=(-device usb-serial,chardev=tracker,id=tracker,port=1,always-plugged=off)
       ;;
     tracker_here)
       machine+=(-chardev "socket,id=far,path=$run_dir/tracker.socket,server=on,wait=off"
         -device virtserialport,chardev=far,name=tracker
         -chardev "socket,id=tracker,path=$run_dir/tracker.socket,server=off,reconnect=1")
-      add_usb && machine+=(-device usb-serial,chardev=tracker,id=tracker)
+      add_usb && machine+=(-device usb-serial,chardev=tracker,id=tracker,port=1)
       ;;
     keyboard) add_usb && machine+=(-device usb-kbd,id=keyboard) ;;
     screen) machine+=(-device VGA,vgamem_mb=32,edid=on,xres=1280,yres=800) ;;
@@ -50,7 +50,7 @@ answer() {
   case "$1 $2" in
     'screendump '*) qmp_said screendump "\"filename\": \"$run_dir/share/${2##*/}\", \"format\": \"png\"" ;;
     'unplug tracker') qmp_said device_del '"id": "tracker"' ;;
-    'plug tracker') qmp_said device_add '"driver": "usb-serial", "id": "tracker", "chardev": "tracker"' ;;
+    'plug tracker') qmp_said device_add '"driver": "usb-serial", "id": "tracker", "port": "1", "chardev": "tracker"' ;;
     'key '*)
       local down=true
       [ "$3" = down ] || down=false
