@@ -81,9 +81,9 @@ bool PageFaults::next_site(const void*& at) noexcept {
     perf_event_header header;      // records are multiples of 8 bytes, so neither part ever wraps
     std::memcpy(&header, data + tail % kDataBytes, sizeof header);
     if (header.type == PERF_RECORD_SAMPLE) {
-      std::uint64_t address = 0;
+      const void* address = nullptr;
       std::memcpy(&address, data + (tail + sizeof header) % kDataBytes, sizeof address);
-      at = reinterpret_cast<const void*>(address);
+      at = address;
       found = true;
     }
     tail += header.size;

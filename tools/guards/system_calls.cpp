@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <csignal>
 #include <cstddef>
@@ -90,7 +91,7 @@ void on_trap(int, siginfo_t* info, void* raw_context) {
   const int saved = errno;
   auto& context = *static_cast<ucontext_t*>(raw_context);
   greg_t* const registers = context.uc_mcontext.gregs;
-  note_system_call(info->si_syscall, reinterpret_cast<const void*>(registers[REG_RIP]));
+  note_system_call(info->si_syscall, std::bit_cast<const void*>(registers[REG_RIP]));
   registers[REG_RAX] =
       orcart_unwatched_call(info->si_syscall, registers[REG_RDI], registers[REG_RSI], registers[REG_RDX],
                             registers[REG_R10], registers[REG_R8], registers[REG_R9]);

@@ -5,6 +5,7 @@
 #include <ucontext.h>
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <csignal>
 
@@ -53,7 +54,7 @@ void on_overrun(int, siginfo_t*, void* raw_context) {
   const int saved = errno;
   const void* at = nullptr;
 #if defined(__x86_64__)
-  at = reinterpret_cast<const void*>(static_cast<ucontext_t*>(raw_context)->uc_mcontext.gregs[REG_RIP]);
+  at = std::bit_cast<const void*>(static_cast<ucontext_t*>(raw_context)->uc_mcontext.gregs[REG_RIP]);
 #else
   (void)raw_context;
 #endif

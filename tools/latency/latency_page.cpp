@@ -162,11 +162,13 @@ std::string timeline(const std::vector<TimelineBar>& bars) {
   const auto x = [&](double ms) { return left + (width - left - 60) * ms / end; };
   std::string out = text("<svg viewBox='0 0 %.0f %.0f' role='img'>", width, height);
   const double step = end > 160 ? 50 : end > 60 ? 20 : 10;
-  for (double ms = 0; ms <= end; ms += step)
+  for (int tick = 0; tick * step <= end; ++tick) {
+    const double ms = tick * step;
     out += text(
         "<line x1='%.1f' x2='%.1f' y1='0' y2='%.0f' stroke='#eee'/>"
         "<text x='%.1f' y='%.0f' font-size='11' fill='#666' text-anchor='middle'>%.0f ms</text>",
         x(ms), x(ms), height - 18, x(ms), height - 4, ms);
+  }
   for (std::size_t i = 0; i < bars.size(); ++i) {
     const TimelineBar& bar = bars[i];
     const double y = row * static_cast<double>(i) + 4;
