@@ -15,7 +15,7 @@ glm::vec3 to_glm(const Eigen::Vector3d& v) {
 }
 
 constexpr double kMargin = 1.08;           // clear space around the surface
-constexpr double kNarrowestAspect = 1.15;  // of the views that the surface must fit into
+constexpr double kNarrowestAspect = 1.15;  // narrower views see more above and below instead of less beside
 
 }  // namespace
 
@@ -54,7 +54,8 @@ EyeMatrices matrices_of(const Eye& eye, double aspect) {
   const double distance_mm = (eye.target_mm - eye.position_mm).norm();
   EyeMatrices matrices;
   matrices.view = glm::lookAt(to_glm(eye.position_mm), to_glm(eye.target_mm), to_glm(eye.up));
-  matrices.projection = glm::perspective(float(eye.field_of_view_rad), float(aspect),
+  const double half_height = std::tan(eye.field_of_view_rad / 2) * std::max(1.0, kNarrowestAspect / aspect);
+  matrices.projection = glm::perspective(float(2 * std::atan(half_height)), float(aspect),
                                          float(distance_mm * 0.02), float(distance_mm * 3));
   matrices.projection[1][1] *= -1;  // row 0 is the top
   if (eye.sideways_mm != 0) {

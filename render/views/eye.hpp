@@ -8,7 +8,8 @@
 
 namespace orcart {
 
-/// Where the eye is, in M. The field of view is vertical.
+/// Where the eye is, in M. The field of view is vertical; in a view that is hardly wider than high it is
+/// wider, so that what it saw beside stays in it.
 struct Eye {
   Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();
   Eigen::Vector3d target_mm = Eigen::Vector3d::Zero();

@@ -13,14 +13,17 @@ glm::vec3 seen_at(const EyeMatrices& matrices, const Eigen::Vector3f& p) {
   return glm::vec3(clip) / clip.w;
 }
 
-TEST(Eye, SeesTheWholeSurfaceFromAnySide) {
-  const Surface surface = scenes::sphere({40, -10, 7}, 25, 16);
+TEST(Eye, SeesTheWholeSurfaceFromAnySideInViewsOfAnyShape) {
+  Surface surface = scenes::sphere({40, -10, 7}, 25, 16);
+  for (Eigen::Vector3f& v : surface.mesh.vertices_mm) v.x() *= 3;
   for (const Eigen::Vector3d& from :
        {Eigen::Vector3d(0, 0, 3), Eigen::Vector3d(1, 2, -0.5), Eigen::Vector3d(-9, 0, 0)}) {
-    const EyeMatrices matrices = matrices_of(eye_on(surface.mesh, from, {0, 1, 0.01}), 1.2);
-    for (const Eigen::Vector3f& v : surface.mesh.vertices_mm) {
-      const glm::vec3 at = seen_at(matrices, v);
-      ASSERT_LE(std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}), 1.0F);
+    for (const double aspect : {0.6, 0.96, 1.2, 2.0}) {
+      const EyeMatrices matrices = matrices_of(eye_on(surface.mesh, from, {0, 1, 0.01}), aspect);
+      for (const Eigen::Vector3f& v : surface.mesh.vertices_mm) {
+        const glm::vec3 at = seen_at(matrices, v);
+        ASSERT_LE(std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}), 1.0F);
+      }
     }
   }
 }
