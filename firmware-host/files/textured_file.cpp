@@ -195,6 +195,11 @@ Result<void> write_textured(const fs::path& file, const TexturedSurface& texture
     return fail(file.string() + ": is not written: " + std::to_string(textured.corners_uv.size()) +
                 " triangles have places in the picture, " +
                 std::to_string(textured.surface.mesh.triangles.size()) + " are needed");
+  const std::size_t texels =
+      static_cast<std::size_t>(textured.width_texels) * static_cast<std::size_t>(textured.height_texels);
+  if (textured.rgba.size() != 4 * texels)
+    return fail(file.string() + ": is not written: its picture has " + std::to_string(textured.rgba.size()) +
+                " bytes, " + std::to_string(4 * texels) + " are needed");
   FileSet set(file);
   if (auto begun = set.begin(); !begun) return begun;
   const std::string name = file.stem().string() + ".png";

@@ -111,7 +111,10 @@ TEST(TexturedFile, LeavesNothingWhereItFails) {
   EXPECT_NE(taken.error().message.find("painted.mtl: is a folder"), std::string::npos)
       << taken.error().message;
   painted.rgba.pop_back();
-  EXPECT_FALSE(write_textured(folder / "other.ply", painted.textured()));
+  const auto cut_short = write_textured(folder / "other.ply", painted.textured());
+  ASSERT_FALSE(cut_short);
+  EXPECT_NE(cut_short.error().message.find("its picture has 7 bytes, 8 are needed"), std::string::npos)
+      << cut_short.error().message;
   painted.corners_uv.pop_back();
   EXPECT_FALSE(write_textured(folder / "other.ply", painted.textured()));
   EXPECT_FALSE(write_textured(folder / "no/such/folder.ply", Painted().textured()));
