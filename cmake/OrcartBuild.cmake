@@ -16,7 +16,7 @@ target_compile_options(orcart_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtu
   $<$<BOOL:${ORCART_WERROR}>:-Werror>)
 # At -O3 GCC 12 guesses wrong in these two (GCC bugs 105329 and 105593).
 target_compile_options(orcart_flags INTERFACE
-  $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-Wno-restrict> $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-Wno-maybe-uninitialized>)
+  "$<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-Wno-restrict;-Wno-maybe-uninitialized>")
 
 # orcart_library(realtime/base SOURCES a.cpp ... LINK orcart::x ... SYSTEM dep ...)
 # makes the library orcart::realtime_base out of the calling folder; header-only where no SOURCES are given.

@@ -157,10 +157,6 @@ std::vector<std::uint8_t> over_grey(std::span<const std::uint8_t> rgba) {
   return opaque;
 }
 
-}  // namespace
-
-namespace {
-
 constexpr std::uintmax_t kLargestPictureBytes = 1U << 30;
 
 bool is_writable(const std::string& extension) {

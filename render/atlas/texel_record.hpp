@@ -12,9 +12,7 @@ struct TexelRecord {
   std::uint16_t angle_cdeg = 0;  ///< between line of sight and normal, hundredths of a degree
   std::uint16_t footprint_um =
       0;                       ///< what a pixel covers of the surface in its longer direction, micrometres
-  std::uint16_t error_um = 0;  ///< predicted, along the surface, micrometres; kUnknownError: not known
-
-  static constexpr std::uint16_t kUnknownError = 65535;
+  std::uint16_t error_um = 0;  ///< predicted, along the surface, micrometres
 };
 static_assert(sizeof(TexelRecord) == 8);
 

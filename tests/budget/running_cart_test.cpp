@@ -2,22 +2,12 @@
 // the driver's.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
+#include "tests/budget/small_demo.hpp"
 #include "tools/latency/bench_cart.hpp"
 #include "tools/latency/guarded_threads.hpp"
 
 namespace orcart::testing {
 namespace {
-
-CartConfig small_demo() {
-  auto config = read_cart(std::filesystem::path(std::getenv("ORCART_SOURCE_DIR")) / "share/carts/demo.toml");
-  if (!config) ADD_FAILURE() << config.error().message;
-  config->texel_mm = 0.4;
-  config->panel = {.width_px = 640, .height_px = 480, .refresh_hz = 20};
-  config->camera.rate_hz = 15;
-  return *config;
-}
 
 TEST(RunningCart, AsksNothingOfHeapLocksKernelOrPagerOnceWarm) {
   if (!guards::kGuardsWork) GTEST_SKIP() << "sanitizers bring a malloc of their own";

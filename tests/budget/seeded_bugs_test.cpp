@@ -1,22 +1,12 @@
 // Each guard catches the bug made for it, and names the place.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
+#include "tests/budget/small_demo.hpp"
 #include "tools/guards/thread_guard.hpp"
 #include "tools/latency/seed_bugs.hpp"
 
 namespace orcart::testing {
 namespace {
-
-CartConfig small_demo() {
-  auto config = read_cart(std::filesystem::path(std::getenv("ORCART_SOURCE_DIR")) / "share/carts/demo.toml");
-  if (!config) ADD_FAILURE() << config.error().message;
-  config->texel_mm = 0.4;
-  config->panel = {.width_px = 640, .height_px = 480, .refresh_hz = 20};
-  config->camera.rate_hz = 15;
-  return *config;
-}
 
 struct Expected {
   SeededBug bug;

@@ -98,7 +98,7 @@ class RealDrivers : public ::testing::Test {
     ASSERT_TRUE(panel) << word_for(panel.error());
     devices.panel = std::move(*panel);
   }
-  /// The procedure, with the panel's picture taken near its end.
+  /// The procedure, with the panel's picture taken near its end, while the camera still shows something.
   void go(Cart& cart) {
     ASSERT_TRUE(cart.start());
     for (int i = 0; i < 300 && !room->is_tracking(); ++i) clock.sleep_until(clock.now() + 100ms);
@@ -106,7 +106,7 @@ class RealDrivers : public ::testing::Test {
     Ticker ticker;
     const Instant start = clock.now() + 1s, end = start + room->duration();
     room->begin_at(start);
-    clock.sleep_until(end - 500ms);
+    clock.sleep_until(end - 3s);
     EXPECT_EQ(std::system("vm-host screendump cart.png"), 0);
     clock.sleep_until(end + 1s);
     ticker.stop();

@@ -47,11 +47,11 @@ class TrackerOnABridge : public ::testing::Test {
   int frames = 0;
 };
 
-TEST_F(TrackerOnABridge, AnswersSixtyPollsASecond) {
+TEST_F(TrackerOnABridge, AnswersSixtyPollsASecondForAMinute) {
   const DriverCounters before = driver->counters();
   const Nanos cpu_before = thread_time();
   frames = 0;
-  run_until(clock.now() + 15s, false);
+  run_until(clock.now() + 60s, false);
   const DriverCounters& after = driver->counters();
   const std::uint64_t polls = after.polls - before.polls, replies = after.replies - before.replies;
   std::cout << "tracker: " << polls << " polls, " << replies << " replies, " << frames << " device frames, "
@@ -59,7 +59,7 @@ TEST_F(TrackerOnABridge, AnswersSixtyPollsASecond) {
             << microseconds(thread_time() - cpu_before) / static_cast<double>(polls)
             << " us of processor time a poll\n";
   EXPECT_GE(replies + 1, polls) << "only the last poll may still be under way";
-  EXPECT_GE(polls, 750u);
+  EXPECT_GE(polls, 3000u);
   EXPECT_EQ(after.crc_bad, before.crc_bad);
   EXPECT_EQ(driver->health(), TrackerHealth::live) << driver->trouble_sentence();
 }
