@@ -53,7 +53,8 @@ Result<std::unique_ptr<KeptSession>> KeptSession::create(const Request& request)
   auto writer = SessionWriter::create(request.file, {.application_version = ORCART_VERSION,
                                                      .config_hash = hash_of(*cart),
                                                      .started_utc = utc_now(),
-                                                     .started_at = request.started_at});
+                                                     .started_at = request.started_at,
+                                                     .tracker_against_video = config.tracker_against_video});
   if (!writer) return tl::unexpected(writer.error());
   const auto picture_bytes =
       packed_bytes(config.camera.format, config.camera.width_px, config.camera.height_px);

@@ -102,12 +102,7 @@ Result<void> finish(TomlReader& reader, std::vector<std::string>* notes) {
   return reader.finish();
 }
 
-}  // namespace
-
-Result<ScopeModel> read_scope(const std::filesystem::path& file, std::vector<std::string>* notes) {
-  const auto opened = TomlReader::open(file);
-  if (!opened) return tl::unexpected(opened.error());
-  TomlReader& reader = **opened;
+Result<ScopeModel> scope_from(TomlReader& reader, std::vector<std::string>* notes) {
   ScopeModel scope;
   const TomlSection top = reader.top();
   scope.name = top.text("name");
@@ -130,6 +125,20 @@ Result<ScopeModel> read_scope(const std::filesystem::path& file, std::vector<std
   check_lens(lens, cone, scope);
   if (auto finished = finish(reader, notes); !finished) return tl::unexpected(finished.error());
   return scope;
+}
+
+}  // namespace
+
+Result<ScopeModel> read_scope(const std::filesystem::path& file, std::vector<std::string>* notes) {
+  const auto opened = TomlReader::open(file);
+  if (!opened) return tl::unexpected(opened.error());
+  return scope_from(**opened, notes);
+}
+
+Result<ScopeModel> read_scope_text(std::string_view text, const std::filesystem::path& file) {
+  const auto opened = TomlReader::parse(text, file);
+  if (!opened) return tl::unexpected(opened.error());
+  return scope_from(**opened, nullptr);
 }
 
 Result<RegistrationFile> read_registration(const std::filesystem::path& file,

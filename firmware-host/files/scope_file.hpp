@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "realtime/base/result.hpp"
@@ -14,6 +15,8 @@ namespace orcart {
 /// All errors at once, each with its line; unknown keys are refused; a lens that is not monotone to the
 /// mask's edge is refused. `notes` takes what was mended, e.g. a pose that was nearly a rotation.
 Result<ScopeModel> read_scope(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);
+/// The same from text, as a session keeps it; `file` is only for messages.
+Result<ScopeModel> read_scope_text(std::string_view text, const std::filesystem::path& file);
 /// Atomic; every number is written in the fewest digits that give it back.
 Result<void> write_scope(const std::filesystem::path& file, const ScopeModel& scope);
 

@@ -82,6 +82,10 @@ Result<SessionMeta> SessionReader::meta() {
   const auto started = database_.integer("SELECT value FROM meta WHERE key = 'started_ns'");
   if (!started) return tl::unexpected(started.error());
   meta.started_at = instant_from_nanos(*started);
+  const auto shift =
+      database_.integer("SELECT value FROM meta WHERE key = 'tracker_against_video_ns'");  // 0 where absent
+  if (!shift) return tl::unexpected(shift.error());
+  meta.tracker_against_video = Nanos{*shift};
   return meta;
 }
 

@@ -20,6 +20,9 @@ struct SessionMeta {
   std::string config_hash;  ///< of cart.toml's bytes
   std::string started_utc;  ///< ISO 8601; the wall clock at `started_at`
   Instant started_at{};     ///< every instant in the file is on the same monotonic clock
+  /// [sync] of the run: already added to mid-exposure where a capture's pose was looked up. Files from before
+  /// it was kept have none, and read as 0.
+  Nanos tracker_against_video{};
 };
 
 /// What pictures were painted by. Texts are the files' own.

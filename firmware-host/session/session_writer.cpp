@@ -47,6 +47,9 @@ Result<void> write_meta(Database& database, const SessionMeta& meta) {
     if (const auto done = statement->with(key, value).step(); !done) return tl::unexpected(done.error());
   if (const auto done = statement->with(std::string_view("started_ns"), meta.started_at).step(); !done)
     return tl::unexpected(done.error());
+  const std::int64_t shift = meta.tracker_against_video.count();
+  if (const auto done = statement->with(std::string_view("tracker_against_video_ns"), shift).step(); !done)
+    return tl::unexpected(done.error());
   return {};
 }
 

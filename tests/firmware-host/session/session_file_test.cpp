@@ -27,7 +27,8 @@ SessionMeta some_meta() {
   return {.application_version = "0.1.0",
           .config_hash = "ab12",
           .started_utc = "2026-05-04T09:30:00Z",
-          .started_at = instant_from_nanos(77)};
+          .started_at = instant_from_nanos(77),
+          .tracker_against_video = -12ms};
 }
 
 class SessionFile : public ::testing::Test {
@@ -118,6 +119,7 @@ TEST_F(SessionFile, KeepsMetaCalibrationEventsAndBudgets) {
   EXPECT_EQ(read.meta()->application, "orcartd");
   EXPECT_EQ(read.meta()->started_utc, "2026-05-04T09:30:00Z");
   EXPECT_EQ(read.meta()->started_at, instant_from_nanos(77));
+  EXPECT_EQ(read.meta()->tracker_against_video, -12ms);
   EXPECT_EQ(read.calibration()->scope_toml, "name = \"30 degree\"");
   EXPECT_EQ(read.calibration()->surface_hash, "cafe");
   ASSERT_EQ(read.events()->size(), 1U);
