@@ -62,21 +62,31 @@ std::unique_ptr<CartRig> CartRig::create(const RigWish& wish) {
     return nullptr;
   }
   rig->devices = std::move(*devices);
+  if (wish.holds.empty()) return rig;
+  GpioScript pedal;
+  for (const Stretch& hold : wish.holds) {
+    pedal.edges.push_back({.at = rig->at(hold.from), .kind = EdgeKind::pressed});
+    pedal.edges.push_back({.at = rig->at(hold.until), .kind = EdgeKind::released});
+  }
+  rig->held_pedal = std::make_unique<SimulatedGpio>(rig->clock, pedal);
   return rig;
 }
 
 bool CartRig::arm(SessionStage* session, StageWrapper* wrapper, std::size_t traced) {
   const Ports ports = devices->ports();
   camera = std::make_unique<LentFrames>(ports.camera);
-  auto made = Cart::create(
-      {.config = config,
-       .patient = patient,
-       .ports = {.tracker = ports.tracker, .camera = *camera, .pedal = ports.pedal, .panel = ports.panel},
-       .clock = clock,
-       .session = session,
-       .longest_run_s = 20,
-       .wrapper = wrapper,
-       .traced = traced});
+  auto made =
+      Cart::create({.config = config,
+                    .patient = patient,
+                    .ports = {.tracker = ports.tracker,
+                              .camera = *camera,
+                              .pedal = held_pedal ? static_cast<GpioLines&>(*held_pedal) : ports.pedal,
+                              .panel = ports.panel},
+                    .clock = clock,
+                    .session = session,
+                    .longest_run_s = 20,
+                    .wrapper = wrapper,
+                    .traced = traced});
   if (!made) {
     ADD_FAILURE() << made.error().message;
     return false;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "board/sim/simulated_gpio.hpp"
 #include "firmware-host/app/cart.hpp"
 #include "firmware-host/app/simulated_devices.hpp"
 #include "tests/path/lent_frames.hpp"
@@ -19,6 +20,8 @@ struct RigWish {
   ProcedureScript script{};
   std::vector<CameraFaultPeriod> camera_faults{};
   std::vector<Nanos> more_presses{};
+  std::vector<Stretch>
+      holds{};  ///< since the start; where there are any, the pedal does this and nothing else
 };
 
 /// Three places: a press that is taken back by the double press at the second, a press at the third, one
@@ -53,6 +56,7 @@ class CartRig {
   SimulatedClock clock;
   std::unique_ptr<SimulatedDevices> devices;
   std::unique_ptr<LentFrames> camera;
+  std::unique_ptr<SimulatedGpio> held_pedal;  ///< null where the script presses
   std::unique_ptr<Cart> cart;
 };
 

@@ -101,6 +101,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   add_camera(*verb, exit_code);
   add_hand_eye(*verb, exit_code);
   add_medium(*verb, exit_code);
+  add_time(*verb, exit_code);
   add_tip(*verb, exit_code);
 }
 

@@ -21,6 +21,7 @@ void add_medium(CLI::App& calibrate, int& exit_code);
 void add_pivot(CLI::App& app, int& exit_code);
 void add_rectify(CLI::App& app, int& exit_code);
 void add_register(CLI::App& app, int& exit_code);
+void add_time(CLI::App& calibrate, int& exit_code);
 void add_tip(CLI::App& calibrate, int& exit_code);
 void add_surface(CLI::App& app, int& exit_code);
 
