@@ -71,6 +71,13 @@ double end_of_ramp(ColourBy by) noexcept {
   return 0;
 }
 
+std::array<std::uint8_t, 3> ramp_colour(double share) noexcept {
+  const Rgb colour = on_ramp(share);
+  std::array<std::uint8_t, 3> bytes{};
+  for (std::size_t c = 0; c < 3; ++c) bytes[c] = static_cast<std::uint8_t>(std::lround(255 * colour[c]));
+  return bytes;
+}
+
 AtlasPicture coloured(AtlasPicture painting, const AtlasRecords& records, ColourBy by) {
   if (by == ColourBy::picture) return painting;
   for (std::size_t i = 0; i < records.texels.size(); ++i) {

@@ -19,6 +19,7 @@
 #include "firmware-host/files/views_file.hpp"
 #include "firmware-host/offline/offline_painter.hpp"
 #include "render/atlas/colouring.hpp"
+#include "tools/orcart/paint_difference.hpp"
 #include "tools/orcart/verbs.hpp"
 
 namespace orcart {
@@ -32,10 +33,18 @@ constexpr const char* kExample =
     "camera's pose\n"
     "in the surface's space as a row-major 3x4 matrix, mm (LPS). Writes NAME.obj, NAME.mtl and NAME.png, "
     "NAME.ply\n"
-    "and NAME.png, or NAME.glb alone.";
+    "and NAME.png, or NAME.glb alone.\n\n"
+    "How far paper mode puts the same light from where it belongs, in mm over the views' cutouts, as colours "
+    "on "
+    "the\n"
+    "surface (.obj, .ply, .glb) or as the last view sees it (.png):\n"
+    "  orcart paint --surface ventricle.ply --seen-from inside --scope scope.toml --views views.csv --out "
+    "painted.obj \\\n"
+    "    --difference difference.png";
 
 struct Arguments {
   std::string surface, scope, views, out;
+  std::string difference;  ///< empty: not asked for
   OfflinePaintOptions options;
   ColourBy colour_by = ColourBy::picture;
   std::optional<Space> space;
@@ -50,6 +59,7 @@ struct Summary {
   double footprint_mm = 0, angle_deg = 0, error_mm = 0;  ///< medians over the painted texels
   double seconds = 0;
   std::string renderer;
+  std::optional<ModeDifference> difference;
 };
 
 void warn(const std::string& sentence) {
@@ -199,19 +209,33 @@ Result<Summary> paint(const Arguments& arguments) {
   const AtlasRecords records = painter->painter().read_records();
   const AtlasPicture shown = coloured(picture, records, arguments.colour_by);
   const auto places = picture_places(layout);
+  std::optional<DifferenceMap> difference;
+  if (!arguments.difference.empty()) {
+    auto map =
+        difference_of(inputs->surface, inputs->scope, layout, arguments.options.seen_from, inputs->views);
+    if (!map) return tl::unexpected(map.error());
+    difference = *std::move(map);
+  }
   const auto written = write_textured(arguments.out, {.surface = inputs->surface,
                                                       .corners_uv = places,
                                                       .width_texels = picture.width_texels,
                                                       .height_texels = picture.height_texels,
                                                       .rgba = shown.rgba});
   if (!written) return tl::unexpected(written.error());
+  if (difference)
+    if (auto done = write_difference(arguments.difference, *difference, inputs->surface, places,
+                                     inputs->views.back().X_MC);
+        !done)
+      return tl::unexpected(done.error());
   Summary summary{.views = inputs->views.size(),
                   .views_without_paint = *without_paint,
                   .coverage = coverage,
                   .texel_mm = layout.texel_mm,
                   .atlas_size_texels = layout.width_texels,
                   .seconds = seconds_since(start),
-                  .renderer = painter->context().renderer_name()};
+                  .renderer = painter->context().renderer_name(),
+                  .difference = {}};
+  if (difference) summary.difference = difference->figures();
   add_medians(layout, records, summary);
   return summary;
 }
@@ -226,6 +250,7 @@ void print(const Summary& summary, const Arguments& arguments) {
       "a pixel covers %.3g mm of the surface, seen %.0f degrees from its normal; predicted error %.3g mm "
       "(medians)\n",
       summary.footprint_mm, summary.angle_deg, summary.error_mm);
+  if (summary.difference) std::puts(difference_text(*summary.difference, arguments.difference).c_str());
   if (const double end = end_of_ramp(arguments.colour_by); end > 0)
     std::printf("colours: yellow is 0, violet %g %s and beyond\n", end,
                 arguments.colour_by == ColourBy::angle ? "degrees" : "mm");
@@ -244,9 +269,10 @@ void print_json(const Summary& summary, const Arguments& arguments) {
   std::printf(
       "{\"views\": %zu, \"views_without_paint\": %zu, \"coverage\": %.6f, \"texel_mm\": %.6g, "
       "\"atlas_size_texels\": %d, \"footprint_mm_median\": %.4f, \"angle_deg_median\": %.2f, "
-      "\"predicted_error_mm_median\": %.4f, \"seconds\": %.3f, \"renderer\": %s, \"out\": %s}\n",
+      "\"predicted_error_mm_median\": %.4f, %s\"seconds\": %.3f, \"renderer\": %s, \"out\": %s}\n",
       summary.views, summary.views_without_paint, summary.coverage, summary.texel_mm,
-      summary.atlas_size_texels, summary.footprint_mm, summary.angle_deg, summary.error_mm, summary.seconds,
+      summary.atlas_size_texels, summary.footprint_mm, summary.angle_deg, summary.error_mm,
+      summary.difference ? difference_json(*summary.difference).c_str() : "", summary.seconds,
       json_text(summary.renderer).c_str(), json_text(arguments.out).c_str());
 }
 
@@ -322,6 +348,11 @@ void add_paint(CLI::App& app, int& exit_code) {
   verb->add_option("--out", arguments->out, "NAME.obj, NAME.ply or NAME.glb")
       ->required()
       ->check(CLI::Validator(writable_kind, "NAME.obj|NAME.ply|NAME.glb"));
+  verb->add_option("--difference", arguments->difference,
+                   "paper mode against perspective, in mm: NAME.obj, .ply, .glb, or a picture NAME.png")
+      ->check(CLI::Validator(
+          [](std::string& file) { return file.ends_with(".png") ? std::string() : writable_kind(file); },
+          "NAME.png|NAME.obj|NAME.ply|NAME.glb"));
   verb->add_flag("--json", arguments->json, "the summary as one JSON object");
   verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -5,9 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 
+#include "firmware-host/files/surface_file.hpp"
+#include "firmware-host/offline/difference_map.hpp"
 #include "realtime/mapper/mapper.hpp"
 #include "tests/render/support/scenes.hpp"
+#include "tools/evaluate/scene.hpp"
 
 namespace orcart {
 namespace {
@@ -51,6 +56,24 @@ Surface slanted(double depth_mm, double slope) {
   return plane;
 }
 
+/// The nearest of all triangles along a ray, one by one, in double (Moeller and Trumbore 1997).
+std::optional<Eigen::Vector3d> first_hit(const TriangleMesh& mesh, const Eigen::Vector3d& origin,
+                                         const Eigen::Vector3d& ray) {
+  double nearest = 1e9;
+  for (const auto& t : mesh.triangles) {
+    const Eigen::Vector3d a = mesh.vertices_mm[t[0]].cast<double>(),
+                          ab = mesh.vertices_mm[t[1]].cast<double>() - a,
+                          ac = mesh.vertices_mm[t[2]].cast<double>() - a, across = ray.cross(ac);
+    const double area = ab.dot(across);
+    if (std::abs(area) < 1e-12) continue;
+    const Eigen::Vector3d from = origin - a, over = from.cross(ab);
+    const double b1 = from.dot(across) / area, b2 = ray.dot(over) / area, far = ac.dot(over) / area;
+    if (b1 >= 0 && b2 >= 0 && b1 + b2 <= 1 && far > 1e-6) nearest = std::min(nearest, far);
+  }
+  if (nearest > 1e8) return std::nullopt;
+  return origin + nearest * ray;
+}
+
 TEST(ModeDifference, FollowsTheClosedFormOnASlantedPlane) {
   constexpr double kDepth = 20, kSlope = 0.4;
   const Surface plane = slanted(kDepth, kSlope);
@@ -92,6 +115,73 @@ TEST(ModeDifference, GrowsWithTheDepthOfASphere) {
   EXPECT_GT(made.difference.texels, 2'000U);
   EXPECT_GT(made.difference.mean_mm, 0.3);
   EXPECT_LT(made.difference.mean_mm, 10);
+}
+
+TEST(ModeDifference, OfAVentricleIsMillimetresAndAgreesWithBruteForce) {
+  const auto file = std::filesystem::path(std::getenv("ORCART_SOURCE_DIR")) / "share/surfaces/ventricle.ply";
+  const Surface ventricle = read_surface(file).value();
+  const RayScene rays = *RayScene::create(ventricle.mesh);
+  const ScopeModel scope = scenes::scope();
+  const EvaluationScene scene{.mesh = ventricle.mesh, .rays = rays, .scope = scope};
+  const double half_width = std::tan(scope.cone_half_angle_rad);
+  std::size_t texels = 0, checked = 0, beside = 0;
+  double sum_mm = 0;
+  for (std::uint64_t number = 0; number < 12; ++number) {
+    RandomStream random(1, number);
+    const auto view = view_of_chance(scene, random);
+    ASSERT_TRUE(view);
+    const Compared made = compared(ventricle, *view, SeenFrom::inside, 0.4);
+    sum_mm += made.difference.mean_mm * static_cast<double>(made.difference.texels);
+    texels += made.difference.texels;
+    for (std::size_t i = number; i < made.layout.owners.size(); i += 31) {
+      if (made.difference.displacement_mm[i] < 0) continue;
+      const Eigen::Vector3d p = scenes::point_of(ventricle, made.layout, i);
+      const Eigen::Vector3d p_C = view->rotation.transpose() * (p - view->translation_mm);
+      // a = h sin(phi) is x, b = h cos(phi) is -y of C: (s, t) are linear, so interpolating changes nothing.
+      const Eigen::Vector3d ray(2 * half_width * p_C.x() / static_cast<double>(made.view.paper.s_size_mm),
+                                2 * half_width * p_C.y() / static_cast<double>(made.view.paper.t_size_mm), 1);
+      const auto shown = first_hit(ventricle.mesh, view->translation_mm, (view->rotation * ray).normalized());
+      ASSERT_TRUE(shown);
+      ++checked;
+      const double expected_mm = (*shown - p).norm();
+      if (std::abs(expected_mm - static_cast<double>(made.difference.displacement_mm[i])) > 0.02) ++beside;
+    }
+  }
+  ::testing::Test::RecordProperty("ventricle_mean_mm", std::to_string(sum_mm / static_cast<double>(texels)));
+  EXPECT_GT(checked, 60U);
+  EXPECT_LE(beside, checked / 50) << "single rays that pass a fold's edge in float or in double only";
+  EXPECT_GT(sum_mm / static_cast<double>(texels), 0.5);
+  EXPECT_LT(sum_mm / static_cast<double>(texels), 2);
+}
+
+TEST(DifferenceMap, KeepsTheNewestViewWhereViewsOverlap) {
+  const Surface plane = slanted(20, 0.4);
+  const ScopeModel scope = scenes::scope();
+  const AtlasLayout layout = *build_atlas(plane.mesh, {.texel_mm = 0.3});
+  DifferenceMap map = DifferenceMap::create(plane, scope, layout, SeenFrom::outside).value();
+  ASSERT_TRUE(map.add({}));
+  const ModeDifference first = map.figures();
+  // Square to the plane nothing is displaced: over the first view that is what is left.
+  Pose<M, C> square;
+  square.rotation =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(-0.4, 0, 1).normalized())
+          .toRotationMatrix();
+  square.translation_mm = Eigen::Vector3d(0, 0, 20) - 20 * square.rotation.col(2);
+  ASSERT_TRUE(map.add(square));
+  const ModeDifference both = map.figures();
+  EXPECT_GT(first.mean_mm, 1);
+  EXPECT_LT(both.mean_mm, 0.6 * first.mean_mm);
+  const AtlasPicture colours = map.colours();
+  for (std::size_t i = 0; i < both.displacement_mm.size(); ++i)
+    if (layout.inside[i] != 0) {
+      ASSERT_EQ(colours.rgba[4 * i + 3] > 0, both.displacement_mm[i] >= 0);
+    } else if (layout.owners[i].triangle == TexelOwner{}.triangle) {
+      ASSERT_EQ(colours.rgba[4 * i + 3], 0) << "no chart, no colour";
+    }
+  const Picture seen = map.picture(square);
+  const std::size_t middle = 4 * (240 * 640 + 320);
+  EXPECT_GT(seen.rgba[middle], 240) << "yellow";
+  EXPECT_LT(seen.rgba[middle + 2], 60);
 }
 
 }  // namespace

@@ -218,6 +218,36 @@ TEST_F(Paint, SaysHowFinelyAndHowStraightTheSurfaceWasSeen) {
   }
 }
 
+TEST_F(Paint, MapsWhatPaperModeCosts) {
+  const Said flat = run("painted.obj", {"--difference", path("difference.png")});
+  ASSERT_EQ(flat.exit_code, 0) << flat.err;
+  EXPECT_NE(flat.out.find("paper mode against perspective: mean 0"), std::string::npos) << flat.out;
+  const auto picture = read_picture(path("difference.png"));
+  ASSERT_TRUE(picture) << picture.error().message;
+  ASSERT_EQ(picture->width_px, 640);
+  // Square to the view all is yellow: nothing is displaced. Beside the picture's circle it is white.
+  const std::uint8_t* middle = &picture->rgba[4 * (240 * 640 + 320)];
+  EXPECT_GT(middle[0], 240);
+  EXPECT_LT(middle[2], 60);
+  EXPECT_EQ(picture->rgba[0], 255);
+  EXPECT_EQ(picture->rgba[2], 255);
+  // Slanted by 27 degrees it is not.
+  folder_.write("views.csv", "ramp.png,0.894427,0,-0.447214,8,0,1,0,0,0.447214,0,0.894427,4\n");
+  const Said slanted = run("painted.obj", {"--json", "--difference", path("difference.glb")});
+  ASSERT_EQ(slanted.exit_code, 0) << slanted.err;
+  const std::size_t at = slanted.out.find("\"difference\": {\"mean_mm\": ");
+  ASSERT_NE(at, std::string::npos) << slanted.out;
+  EXPECT_GT(std::stod(slanted.out.substr(at + 28)), 0.5);
+  EXPECT_TRUE(std::filesystem::exists(path("difference.glb")));
+}
+
+TEST_F(Paint, RefusesAMapOfAViewThatPaperModeHasNoScaleFor) {
+  // The centre passes the plate's edge, which still is in the picture.
+  folder_.write("views.csv", "ramp.png,1,0,0,12,0,1,0,0,0,0,1,0\n");
+  expect_refused("ramp.png: the central ray misses the surface", {"--difference", path("difference.png")});
+  EXPECT_FALSE(std::filesystem::exists(path("difference.png")));
+}
+
 TEST_F(Paint, ColoursByWhatIsKnownOfEachTexel) {
   ASSERT_EQ(run("painted.ply").exit_code, 0);
   const auto as_seen = read_picture(path("painted.png"));
