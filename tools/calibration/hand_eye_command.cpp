@@ -69,6 +69,8 @@ Result<void> refine(const std::vector<HandEyeView>& views, const Lens& lens, con
   if (!refined) return tl::unexpected(refined.error());
   result.refined = std::move(*refined);
   result.floor_mm = tracker_floor_mm(views, result.refined, noise);
+  result.views = views;
+  result.task = best;
   return {};
 }
 

@@ -26,6 +26,8 @@ struct HandEyeCalibration {
   std::vector<double> left_out_mm;  ///< of each view
   double floor_mm = 0;              ///< what the declared tracker noise alone makes of the board's scatter
   std::vector<std::string> names;   ///< of the views used
+  std::vector<HandEyeView> views;   ///< those used, as they went into the fits
+  RefineTask task;                  ///< how they were fitted
   std::vector<std::string> notes;
 };
 

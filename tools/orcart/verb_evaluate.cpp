@@ -26,7 +26,8 @@ constexpr const char* kFooter =
     "Examples:\n"
     "  orcart evaluate --page out/evaluation\n"
     "  orcart evaluate --noise vega --setups 200 --json\n"
-    "  orcart evaluate --surface s.ply --scope scope.toml --seen-from outside --views views.csv\n";
+    "  orcart evaluate --surface s.ply --scope scope.toml --seen-from outside --views views.csv\n"
+    "  orcart evaluate board image*.png --poses poses.csv --pattern chessboard:18x16:2mm\n";
 
 struct Arguments {
   EvaluateCommand command;
@@ -127,7 +128,12 @@ void add_evaluate(CLI::App& app, int& exit_code) {
                    "views.csv: recorded pictures to compare in place of simulated ones");
   verb->add_option("--page", command.page, "a folder for a page with pictures and figures");
   verb->add_flag("--json", arguments->json, "the figures as JSON");
-  verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+#ifdef ORCART_WITH_CALIBRATION
+  add_evaluate_board(*verb, exit_code);
+#endif
+  verb->callback([verb, arguments, &exit_code] {
+    if (verb->get_subcommands().empty()) exit_code = run(*arguments);
+  });
 }
 
 }  // namespace orcart

@@ -13,6 +13,7 @@ void add_bench_paint(CLI::App& bench_verb, int& exit_code);  ///< a part of `ben
 void add_decode(CLI::App& app, int& exit_code);
 void add_emulate(CLI::App& app, int& exit_code);
 void add_evaluate(CLI::App& app, int& exit_code);
+void add_evaluate_board(CLI::App& evaluate, int& exit_code);
 void add_latency(CLI::App& app, int& exit_code);
 void add_paint(CLI::App& app, int& exit_code);
 void add_probe(CLI::App& app, int& exit_code);
