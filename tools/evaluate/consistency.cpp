@@ -10,10 +10,17 @@ namespace orcart {
 
 namespace {
 
-/// Square grid of greys on a tangent plane; nan where the picture does not show the place.
+/// Square grid of greys on a tangent plane.
 struct Patch {
   int edge = 0;
   std::vector<float> grey;
+  /// How many places above and left of a corner the picture does not show; (edge + 1) squared.
+  std::vector<int> unseen;
+
+  int unseen_within(int x, int y, int size) const {
+    const auto at = [&](int i, int j) { return unseen[static_cast<std::size_t>(j * (edge + 1) + i)]; };
+    return at(x + size, y + size) - at(x, y + size) - at(x + size, y) + at(x, y);
+  }
 };
 
 double grey_at(const Picture& picture, const Eigen::Vector2d& pixel) {
@@ -42,31 +49,48 @@ std::optional<Eigen::Vector2d> seen_at(const EvaluationScene& scene, const Pose<
   return pixel;
 }
 
-/// The patch's samples are put onto the surface along the normal, so that a curved wall is no error.
-std::optional<Patch> patch_of(const EvaluationScene& scene, const TakenPicture& taken, const Landmark& at,
-                              double half_mm, double step_mm) {
+/// The grey of a place of the tangent plane, put onto the surface along the normal, so that a curved wall is
+/// no error; nothing where the picture does not show it.
+std::optional<double> grey_on_surface(const EvaluationScene& scene, const TakenPicture& taken,
+                                      const Landmark& at, const Eigen::Vector3d& flat) {
+  constexpr float kLiftMm = 2;
+  const auto hit = scene.rays.nearest((flat + static_cast<double>(kLiftMm) * at.normal).cast<float>(),
+                                      (-at.normal).cast<float>(), 2 * kLiftMm);
+  if (!hit) return std::nullopt;
+  const Eigen::Vector3d place = flat + static_cast<double>(kLiftMm - hit->distance_mm) * at.normal;
+  const auto pixel = seen_at(scene, taken.X_MC, place);
+  if (!pixel || scene.rays.hidden(taken.X_MC.translation_mm.cast<float>(), place.cast<float>(), 0.2F))
+    return std::nullopt;
+  return grey_at(taken.picture, *pixel);
+}
+
+Patch patch_of(const EvaluationScene& scene, const TakenPicture& taken, const Landmark& at, double half_mm,
+               double step_mm) {
   const auto tangents = tangents_of(at.normal);
   const int steps = static_cast<int>(std::lround(half_mm / step_mm));
-  Patch patch{.edge = 2 * steps + 1, .grey = {}};
-  constexpr float kLiftMm = 2;
-  for (int j = -steps; j <= steps; ++j)
-    for (int i = -steps; i <= steps; ++i) {
-      const Eigen::Vector3d flat = at.place_mm + tangents * Eigen::Vector2d(i * step_mm, j * step_mm);
-      const auto hit = scene.rays.nearest((flat + static_cast<double>(kLiftMm) * at.normal).cast<float>(),
-                                          (-at.normal).cast<float>(), 2 * kLiftMm);
-      if (!hit) return std::nullopt;
-      const Eigen::Vector3d place = flat + static_cast<double>(kLiftMm - hit->distance_mm) * at.normal;
-      const auto pixel = seen_at(scene, taken.X_MC, place);
-      if (!pixel || scene.rays.hidden(taken.X_MC.translation_mm.cast<float>(), place.cast<float>(), 0.2F))
-        return std::nullopt;
-      patch.grey.push_back(static_cast<float>(grey_at(taken.picture, *pixel)));
+  Patch patch{.edge = 2 * steps + 1, .grey = {}, .unseen = {}};
+  const auto width = static_cast<std::size_t>(patch.edge + 1);
+  patch.unseen.assign(width * width, 0);
+  for (int j = 0; j < patch.edge; ++j)
+    for (int i = 0; i < patch.edge; ++i) {
+      const Eigen::Vector3d flat =
+          at.place_mm + tangents * Eigen::Vector2d((i - steps) * step_mm, (j - steps) * step_mm);
+      const auto grey = grey_on_surface(scene, taken, at, flat);
+      patch.grey.push_back(static_cast<float>(grey.value_or(0)));
+      const std::size_t here = static_cast<std::size_t>(j + 1) * width + static_cast<std::size_t>(i + 1);
+      patch.unseen[here] = patch.unseen[here - 1] + patch.unseen[here - width] -
+                           patch.unseen[here - width - 1] + (grey ? 0 : 1);
     }
   return patch;
 }
 
-/// The correlation of a's middle with b's part that lies (dx, dy) samples off its middle.
+constexpr double kUnknown = -2;  ///< in place of a correlation
+
+/// The correlation of a with b's part that lies (dx, dy) samples off its middle; unknown where b does not
+/// show it whole.
 double correlation(const Patch& a, const Patch& b, int dx, int dy) {
   const int middle = b.edge / 2, half = a.edge / 2;
+  if (b.unseen_within(middle - half + dx, middle - half + dy, a.edge) > 0) return kUnknown;
   double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
   for (int j = 0; j < a.edge; ++j)
     for (int i = 0; i < a.edge; ++i) {
@@ -105,6 +129,9 @@ std::optional<PatchShift> shift_of(const Patch& a, const Patch& b, const Landmar
       }
   constexpr double kLeast = 0.7;
   if (best < kLeast || std::abs(best_x) == reach || std::abs(best_y) == reach) return std::nullopt;
+  // A best shift beside what is not seen may be none: the true one could lie there.
+  for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
+    if (correlation(a, b, best_x + dx, best_y + dy) == kUnknown) return std::nullopt;
   const Eigen::Vector2d steps(
       best_x + top_of(correlation(a, b, best_x - 1, best_y), best, correlation(a, b, best_x + 1, best_y)),
       best_y + top_of(correlation(a, b, best_x, best_y - 1), best, correlation(a, b, best_x, best_y + 1)));
@@ -120,12 +147,14 @@ PairConsistency compare(const EvaluationScene& scene, const TakenPicture& first,
   const auto places =
       landmarks_of_chance(scene, first.X_MC, static_cast<std::size_t>(settings.patches), random);
   for (const Landmark& place : places) {
-    const auto b =
+    const Patch a = patch_of(scene, first, place, settings.patch_mm / 2, settings.step_mm);
+    if (a.unseen_within(0, 0, a.edge) > 0) continue;
+    const Patch b =
         patch_of(scene, second, place, settings.patch_mm / 2 + settings.reach_mm, settings.step_mm);
-    const auto a = b ? patch_of(scene, first, place, settings.patch_mm / 2, settings.step_mm) : std::nullopt;
-    if (!a) continue;
+    const int off = (b.edge - a.edge) / 2;
+    if (b.unseen_within(off, off, a.edge) > 0) continue;
     ++pair.looked_at;
-    if (const auto shift = shift_of(*a, *b, place, settings.step_mm)) pair.patches.push_back(*shift);
+    if (const auto shift = shift_of(a, b, place, settings.step_mm)) pair.patches.push_back(*shift);
   }
   std::vector<double> lengths;
   for (const PatchShift& patch : pair.patches) lengths.push_back(patch.shift_mm.norm());

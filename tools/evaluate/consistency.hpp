@@ -25,15 +25,15 @@ struct PatchShift {
 
 struct PairConsistency {
   std::vector<PatchShift> patches;  ///< those with texture enough, correlation of at least 0.7
-  std::size_t looked_at = 0;        ///< patches that both pictures see whole
+  std::size_t looked_at = 0;        ///< patches that both pictures see whole, where the poses are right
   double median_mm = 0, p95_mm = 0;
 };
 
 struct ConsistencySettings {
-  double patch_mm = 3;    ///< edge of a patch
+  double patch_mm = 2.5;  ///< edge of a patch
   double step_mm = 0.1;   ///< of its samples and of the search
-  double reach_mm = 1.5;  ///< of the search, either way
-  int patches = 40;       ///< tried a pair
+  double reach_mm = 3;    ///< of the search, either way: what lies farther apart is not found
+  int patches = 60;       ///< tried a pair
 };
 
 /// Patches lie about points of the surface in the middle of the first picture that the second one sees too.

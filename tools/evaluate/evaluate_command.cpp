@@ -8,27 +8,13 @@
 #include "firmware-host/files/scope_file.hpp"
 #include "firmware-host/files/surface_file.hpp"
 #include "firmware-host/files/views_file.hpp"
-#include "firmware-host/tracker/ndi/tool_definition.hpp"
-#include "tools/evaluate/propagation.hpp"
+#include "tools/evaluate/marker_bodies.hpp"
+#include "tools/evaluate/pair_prediction.hpp"
 #include "tools/mesh/mesh_pictures.hpp"
 
 namespace orcart {
 
 namespace {
-
-/// What two captures of one set-up do not share.
-constexpr ComponentSet kApart{true, true, false, true, true, true, true};
-
-Result<std::vector<Eigen::Vector3d>> markers_of(const std::filesystem::path& rom) {
-  const auto tool = ndi::read_tool_definition(rom);
-  if (!tool) return tl::unexpected(tool.error());
-  std::vector<Eigen::Vector3d> markers;
-  for (int i = 0; i < tool->marker_count; ++i) {
-    const auto& marker = tool->markers_mm[static_cast<std::size_t>(i)];
-    markers.emplace_back(marker[0], marker[1], marker[2]);
-  }
-  return markers;
-}
 
 /// Everything a scene borrows.
 struct Belongings {
@@ -47,8 +33,8 @@ class Evaluator {
     for (const auto& [name, marker_rms_mm] : command_.noises) {
       SimulationRequest request = command_.simulation;
       request.model.marker_rms_mm = marker_rms_mm;
-      const auto told = [&](int done) {
-        progress_(name + ": " + std::to_string(request.setups) + " set-ups",
+      const auto told = [this, &request, &run = name](int done) {
+        progress_(run + ": " + std::to_string(request.setups) + " set-ups",
                   static_cast<double>(done) / request.setups);
       };
       auto result = simulate(scene_, request, told);
@@ -80,7 +66,7 @@ class Evaluator {
       PairReport pair{.first = "capture " + std::to_string(2 * i + 1),
                       .second = "capture " + std::to_string(2 * i + 2)};
       pair.found = compare(scene_, a, b, {}, random);
-      pair.predicted_mm = predicted_mm(pair.found, first, second, fiducials);
+      pair.predicted_mm = predicted_apart_mm(scene_, model(), fiducials, pair.found, first, second);
       pair.true_mm = true_shift_mm(pair.found, {first.X_MC, believed_a}, {second.X_MC, b.X_MC});
       report.pairs.push_back(std::move(pair));
     }
@@ -107,7 +93,8 @@ class Evaluator {
         PairReport pair{.first = file->views[i - 1].image.filename().string(),
                         .second = file->views[i].image.filename().string(),
                         .found = compare(scene_, *before, now, {}, random)};
-        pair.predicted_mm = predicted_mm(pair.found, {.X_MC = before->X_MC}, {.X_MC = now.X_MC}, fiducials);
+        pair.predicted_mm = predicted_apart_mm(scene_, model(), fiducials, pair.found, {.X_MC = before->X_MC},
+                                               {.X_MC = now.X_MC});
         report.pairs.push_back(std::move(pair));
       }
       before = std::move(now);
@@ -182,21 +169,6 @@ class Evaluator {
     return made;
   }
 
-  /// RMS over the patches of what propagation expects between the two.
-  double predicted_mm(const PairConsistency& pair, const Capture& first, const Capture& second,
-                      const std::vector<Eigen::Vector3d>& fiducials) const {
-    const ErrorSpread spread = spread_of(scene_, model(), fiducials);
-    double sum = 0;
-    for (const PatchShift& patch : pair.patches)
-      for (const Capture* capture : {&first, &second}) {
-        const auto landmark = landmark_of(capture->X_MC, patch.place_mm, patch.normal);
-        const auto error =
-            landmark ? predict(scene_, model(), spread, *capture, *landmark, kApart) : std::nullopt;
-        if (error) sum += error->covariance_mm2.trace();
-      }
-    return pair.patches.empty() ? 0 : std::sqrt(sum / static_cast<double>(pair.patches.size()));
-  }
-
   struct TrueAndBelieved {
     Pose<M, C> truly, believed;
   };
@@ -221,13 +193,6 @@ class Evaluator {
     if (lengths.empty()) return -1;
     std::sort(lengths.begin(), lengths.end());
     return lengths[lengths.size() / 2];
-  }
-
-  std::optional<Landmark> landmark_of(const Pose<M, C>& X_MC, const Eigen::Vector3d& place,
-                                      const Eigen::Vector3d& normal) const {
-    const auto pixel = project(own_.scope.lens, X_MC.rotation.transpose() * (place - X_MC.translation_mm));
-    if (!pixel) return std::nullopt;
-    return Landmark{.place_mm = place, .normal = normal, .pixel = *pixel};
   }
 
   /// Negative where the view does not paint.
@@ -272,7 +237,8 @@ Result<EvaluationReport> evaluate(const EvaluateCommand& command, const Evaluate
   if (!own) return tl::unexpected(own.error());
   const auto registration = read_registration(command.registration);
   if (!registration) return tl::unexpected(registration.error());
-  auto scope_markers = markers_of(command.scope_rom), reference_markers = markers_of(command.reference_rom);
+  auto scope_markers = markers_of_body(command.scope_rom),
+       reference_markers = markers_of_body(command.reference_rom);
   if (!scope_markers) return tl::unexpected(scope_markers.error());
   if (!reference_markers) return tl::unexpected(reference_markers.error());
   EvaluationReport report{.surface = command.surface.filename().string(),

@@ -1,0 +1,198 @@
+// Sessions written as a cart writes them: captures in their place, a reference that slips on the way,
+// captures that were undone.
+#include "tools/evaluate/session/session_consistency.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "board/sim/tissue.hpp"
+#include "firmware-host/files/surface_file.hpp"
+#include "firmware-host/session/session_writer.hpp"
+#include "tests/firmware-host/files/temporary_folder.hpp"
+#include "tests/tools/evaluate/ball_scene.hpp"
+#include "tools/evaluate/error_chain.hpp"
+
+namespace orcart {
+namespace {
+
+/// Captures of a hollow ball's wall, a few degrees apart.
+class SessionConsistency : public ::testing::Test {
+ protected:
+  static constexpr int kWidth = 640, kHeight = 480;
+
+  void SetUp() override {
+    const Surface surface = *make_surface(ball_.mesh, "ball");
+    hash_ = surface.identity.hash;
+    ASSERT_TRUE(write_ply(folder_ / "ball.ply", surface));
+    ball_.scope.calibrated_on = "2026-01-01";
+    ASSERT_TRUE(write_scope(folder_ / "scope.toml", ball_.scope));
+    ASSERT_TRUE(write_registration(folder_ / "registration.toml",
+                                   {.X_MR = ball_.scene().X_MR, .surface_hash = hash_}));
+  }
+
+  static std::string text_of_file(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  Pose<M, C> pose(int number) const {
+    Twist twist = Twist::Zero();
+    twist[3] = 0.06 * number;
+    Pose<M, C> X_MC = moved(Pose<M, C>{}, twist);
+    X_MC.translation_mm = {0, 0, 14};
+    return X_MC;
+  }
+
+  /// Luma of mottled tissue, YUYV.
+  std::vector<std::byte> picture(const Pose<M, C>& X_MC) const {
+    std::vector<std::byte> bytes(packed_bytes(PixelFormat::yuyv, kWidth, kHeight), std::byte{128});
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        int grey = 0;
+        if (const auto direction = direction_of(ball_.scope.lens, {x, y})) {
+          const Eigen::Vector3f along = (X_MC.rotation * *direction).cast<float>(),
+                                from = X_MC.translation_mm.cast<float>();
+          if (const auto hit = ball_.rays.nearest(from, along, 100))
+            grey = static_cast<int>(
+                255 *
+                tissue_colour(from + hit->distance_mm * along, 1).dot(Eigen::Vector3f(0.3F, 0.6F, 0.1F)));
+        }
+        bytes[2 * static_cast<std::size_t>(y * kWidth + x)] = static_cast<std::byte>(grey);
+      }
+    return bytes;
+  }
+
+  struct Taken {
+    int number = 0;
+    double wrong_mm = 0;  ///< believed so far beside the truth, along x
+    bool undone = false;
+  };
+
+  std::filesystem::path write_session(const std::vector<Taken>& all) {
+    const auto file = folder_ / ("s" + std::to_string(++sessions_) + ".orcart");
+    SessionWriter writer = SessionWriter::create(file, {.started_utc = "2026-01-01T00:00:00Z",
+                                                        .started_at = instant_from_nanos(0)})
+                               .value();
+    EXPECT_TRUE(writer.write_calibration({.scope_toml = text_of_file(folder_ / "scope.toml"),
+                                          .registration_toml = text_of_file(folder_ / "registration.toml"),
+                                          .surface_hash = hash_}));
+    CaptureSlots slots(2, packed_bytes(PixelFormat::yuyv, kWidth, kHeight));
+    std::uint32_t unit = 0;
+    for (const Taken& taken : all) {
+      auto bytes = picture(pose(taken.number));
+      CapturedFrame frame{.sequence = unit};
+      frame.image = packed_image(bytes.data(), PixelFormat::yuyv, kWidth, kHeight);
+      CaptureFacts facts{.unit = ++unit};
+      frame.exposure_start = instant_from_nanos(10'000'000'000LL * unit);
+      facts.X_MC = pose(taken.number);
+      facts.X_MC.translation_mm.x() += taken.wrong_mm;
+      EXPECT_TRUE(slots.offer(frame, facts));
+      if (taken.undone) {
+        EXPECT_TRUE(slots.undone(unit));
+      }
+      EXPECT_TRUE(writer.write_pending(slots));
+    }
+    return file;
+  }
+
+  SessionCommand command(const std::filesystem::path& session) const {
+    const auto share = std::filesystem::path(std::getenv("ORCART_SOURCE_DIR")) / "share/tools";
+    return {.session = session,
+            .surface = folder_ / "ball.ply",
+            .scope_rom = share / "scope.rom",
+            .reference_rom = share / "reference.rom"};
+  }
+
+  static Result<SessionReport> evaluated(const SessionCommand& command) {
+    return evaluate_session(command, [](const std::string&, double) {});
+  }
+
+  BallScene ball_;
+  TemporaryFolder folder_;
+  std::string hash_;
+  int sessions_ = 0;
+};
+
+TEST_F(SessionConsistency, CapturesInTheirPlaceRaiseNoAlarm) {
+  auto ask = command(write_session({{0}, {1}, {2}, {3}}));
+  ask.page = folder_ / "page";
+  const auto report = evaluated(ask);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->captures, 4U);
+  EXPECT_EQ(report->pairs.size() + report->without_overlap + report->unmatched, 6U);  // 1 + 2 + 3
+  EXPECT_GE(report->pairs.size(), 4U);
+  EXPECT_EQ(report->alarms(), 0U);
+  EXPECT_FALSE(report->break_in_time());
+  EXPECT_NEAR(report->pairs.front().second_s, 20, 1e-9);
+  EXPECT_NE(text_of(*report).find("no alarm"), std::string::npos);
+  EXPECT_NE(text_of(*report).find("cannot see a shift that both pictures share"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "page/consistency.html"));
+}
+
+TEST_F(SessionConsistency, AReferenceThatSlipsIsFoundInTime) {
+  // 1.3 mm from the third capture on, against 0.5 predicted.
+  const auto report = evaluated(command(write_session({{0}, {1}, {2, 1.3}, {3, 1.3}})));
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_GE(report->alarms(), 2U);
+  const auto gap = report->break_in_time();
+  ASSERT_TRUE(gap) << text_of(*report);
+  EXPECT_EQ(gap->after, "capture 2");
+  EXPECT_EQ(gap->before, "capture 3");
+  EXPECT_NEAR(gap->from_s, 20, 1e-9);
+  for (const SessionPair& pair : report->pairs)
+    if (pair.first_s > 25 || pair.second_s < 25) {
+      EXPECT_FALSE(pair.pair.alarm()) << pair.pair.first;
+    }
+  EXPECT_NE(text_of(*report).find("ALARM"), std::string::npos);
+  EXPECT_NE(json_of(*report).find("\"break\": true"), std::string::npos);
+}
+
+TEST_F(SessionConsistency, AShiftBeyondTheSearchIsToldAsNoMatch) {
+  const auto report = evaluated(command(write_session({{0}, {0, 5}})));
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->unmatched, 1U) << text_of(*report);
+  EXPECT_EQ(report->without_overlap, 0U);
+  EXPECT_NE(text_of(*report).find("1 see one place but do not match"), std::string::npos) << text_of(*report);
+}
+
+TEST_F(SessionConsistency, LeavesOutWhatWasUndone) {
+  const auto report = evaluated(command(write_session({{0}, {1, 1.3, true}, {1}})));
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->captures, 2U);
+  EXPECT_EQ(report->undone, 1U);
+  EXPECT_EQ(report->alarms(), 0U);
+}
+
+TEST_F(SessionConsistency, RefusesAnotherSurfaceAndTooFewCaptures) {
+  const auto alone = evaluated(command(write_session({{0}})));
+  ASSERT_FALSE(alone);
+  EXPECT_NE(alone.error().message.find("two or more are accepted"), std::string::npos);
+  auto other = command(write_session({{0}, {1}}));
+  ASSERT_TRUE(write_ply(folder_ / "other.ply", *make_surface(hollow_ball(29), "other")));
+  other.surface = folder_ / "other.ply";
+  const auto wrong = evaluated(other);
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().message.find("bring the surface of that session"), std::string::npos);
+  EXPECT_FALSE(evaluated(command(folder_ / "none.orcart")));
+}
+
+TEST(GreyOf, TakesTheLumaOfEachFormat) {
+  const std::array<std::pair<PixelFormat, std::vector<std::byte>>, 4> pictures{
+      {{PixelFormat::yuyv, {std::byte{10}, std::byte{1}, std::byte{20}, std::byte{2}}},
+       {PixelFormat::uyvy, {std::byte{1}, std::byte{10}, std::byte{2}, std::byte{20}}},
+       {PixelFormat::gray8, {std::byte{10}, std::byte{20}}},
+       {PixelFormat::rgba8888,
+        {std::byte{10}, std::byte{10}, std::byte{10}, std::byte{255}, std::byte{20}, std::byte{20},
+         std::byte{20}, std::byte{255}}}}};
+  for (const auto& [format, bytes] : pictures) {
+    const auto grey = grey_of({.width_px = 2, .height_px = 1, .format = format, .bytes = bytes});
+    ASSERT_TRUE(grey) << grey.error().message;
+    EXPECT_EQ(grey->rgba, (std::vector<std::uint8_t>{10, 10, 10, 255, 20, 20, 20, 255}));
+  }
+  EXPECT_FALSE(
+      grey_of({.width_px = 2, .height_px = 2, .format = PixelFormat::gray8, .bytes = {std::byte{1}}}));
+}
+
+}  // namespace
+}  // namespace orcart

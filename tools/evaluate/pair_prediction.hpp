@@ -1,0 +1,17 @@
+// How far apart two captures of one place must be expected to paint it.
+#pragma once
+
+#include "tools/evaluate/consistency.hpp"
+#include "tools/evaluate/propagation.hpp"
+
+namespace orcart {
+
+/// What two captures of one set-up do not share.
+inline constexpr ComponentSet kApart{true, true, false, true, true, true, true};
+
+/// RMS over the patches of what propagation expects between the two, mm; 0 without patches.
+double predicted_apart_mm(const EvaluationScene& scene, const ErrorModel& model,
+                          const std::vector<Eigen::Vector3d>& fiducials_M_mm, const PairConsistency& pair,
+                          const Capture& first, const Capture& second);
+
+}  // namespace orcart

@@ -1,0 +1,42 @@
+// A session file as the evaluation wants it: what pictures were painted by, and the captures one by one.
+#pragma once
+
+#include "firmware-host/files/scope_file.hpp"
+#include "firmware-host/session/session_reader.hpp"
+#include "tools/evaluate/consistency.hpp"
+
+namespace orcart {
+
+/// One thread; pictures are read when they are asked for, so a long session needs no more memory.
+class RecordedSession {
+ public:
+  /// Refuses what is no session file, or holds no passport or registration that can be read.
+  static Result<RecordedSession> open(const std::filesystem::path& file);
+
+  const ScopeModel& scope() const { return scope_; }
+  const RegistrationFile& registration() const { return registration_; }
+  const std::string& surface_hash() const { return surface_hash_; }
+  /// In the order of painting, those that were undone left out.
+  const std::vector<StoredCapture>& captures() const { return captures_; }
+  std::size_t undone() const { return undone_; }
+  /// Of the picture's exposure, since the session began, s.
+  double at_s(const StoredCapture& capture) const { return seconds(capture.exposure_start - started_at_); }
+  /// Its luma as grey. Refuses a picture that is not of the passport's size.
+  Result<TakenPicture> taken(const StoredCapture& capture);
+
+ private:
+  explicit RecordedSession(SessionReader reader) : reader_(std::move(reader)) {}
+  SessionReader reader_;
+  std::string name_;
+  ScopeModel scope_;
+  RegistrationFile registration_;
+  std::string surface_hash_;
+  std::vector<StoredCapture> captures_;
+  std::size_t undone_ = 0;
+  Instant started_at_{};
+};
+
+/// The brightness of each pixel, repeated in red, green and blue. Refuses bytes that do not fit the size.
+Result<Picture> grey_of(const StoredPicture& stored);
+
+}  // namespace orcart
