@@ -106,9 +106,13 @@ Result<Surface> finish_surface(ParsedSurface parsed, const std::string& name, Su
   if (parsed.mesh.triangles.empty()) return make_surface(std::move(parsed.mesh), name, notes);
   const auto space = space_of(parsed, where_unstated, name);
   if (!space) return tl::unexpected(space.error());
-  convert_to_lps(*space, parsed.mesh);
+  convert_to_lps(*space, parsed.mesh);  // a half turn: what points along the winding still does
   auto surface = make_surface(std::move(parsed.mesh), name, notes);
   if (!surface) return surface;
+  if (!surface->closed && parsed.normals.against > parsed.normals.along && notes != nullptr)
+    notes->sentences.push_back(name +
+                               ": its normals point against the order of its triangles' corners, which is "
+                               "what counts: its outside may be the side you call inside");
   const std::string& stated = parsed.stated.hash;
   if (!stated.empty() && stated != surface->identity.hash)
     return fail(name + ": states the hash " + stated.substr(0, 32) + " but its triangles have " +

@@ -23,11 +23,13 @@ struct SurfaceNotes {
 /// states its space
 /// (`SPACE=LPS` or `SPACE=RAS` in a comment, as 3D Slicer writes) is obeyed; one that states none is taken to
 /// be `where_unstated`, and refused where that is not told. A file that states a hash of its own must match
-/// it.
+/// it. A PLY's normals are not kept, since they follow from the triangles; where most of an open surface's
+/// point against its winding, it is told.
 Result<Surface> read_surface(const std::filesystem::path& file, SurfaceNotes* notes = nullptr,
                              std::optional<Space> where_unstated = std::nullopt);
 
-/// Binary little-endian PLY with the identity in comments. Written beside and renamed: never half a file.
+/// Binary little-endian PLY with the identity in comments and vertex_normals(). Written beside and renamed:
+/// never half a file.
 Result<void> write_ply(const std::filesystem::path& file, const Surface& surface);
 
 /// Checks a mesh made in memory (LPS mm) the same way and gives it its hash; `name` is for messages.

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "firmware-host/files/surface_file.hpp"
+#include "firmware-host/files/vertex_normals.hpp"
 #include "realtime/base/result.hpp"
 #include "realtime/geometry/triangle_mesh.hpp"
 
@@ -22,6 +23,7 @@ constexpr std::size_t kLargestVertexCount = 3 * kLargestTriangleCount;
 struct ParsedSurface {
   TriangleMesh mesh;
   SurfaceIdentity stated;            ///< hash, series and frame of reference where the file has them
+  NormalVotes normals;               ///< none where the file states no normals
   std::optional<std::string> space;  ///< the word after SPACE= (3D Slicer's convention), e.g. LPS
 };
 

@@ -32,6 +32,8 @@ class PlyParser {
     for (const PlyElement& element : header_.elements) {
       if (auto read = read_element(element, body); !read) return tl::unexpected(read.error());
     }
+    if (normals_.size() == surface_.mesh.vertices_mm.size())
+      surface_.normals = vote_on_winding(surface_.mesh, normals_);
     if (is_split_) merge_equal_vertices(surface_.mesh);
     return std::move(surface_);
   }
@@ -82,20 +84,26 @@ class PlyParser {
     return {};
   }
 
+  static int normal_axis(const std::string& name) {
+    return name == "nx" ? 3 : name == "ny" ? 4 : name == "nz" ? 5 : -1;
+  }
+
   Result<void> read_vertices(const PlyElement& element, PlyBody& body) {
-    std::vector<int> axis_of;
+    std::vector<int> axis_of;  // 0 to 2 a place's, 3 to 5 a normal's
     unsigned axes = 0;
+    bool has_normals = false;
     for (const PlyProperty& property : element.properties) {
       const int axis = property.count_type || property.name.size() != 1 ? -1 : property.name[0] - 'x';
       const bool known = axis >= 0 && axis < 3;
-      axis_of.push_back(known ? axis : -1);
+      axis_of.push_back(known ? axis : property.count_type ? -1 : normal_axis(property.name));
+      has_normals = has_normals || axis_of.back() == 3;
       is_split_ = is_split_ || property.name == "texture_u" || property.name == "u" || property.name == "s";
       if (known) axes |= 1U << static_cast<unsigned>(axis);
     }
     if (axes != 7) return fail(name_ + ": its vertices lack x, y or z; all three are expected");
     surface_.mesh.vertices_mm.reserve(element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      Eigen::Vector3f vertex = Eigen::Vector3f::Zero();
+      std::array<float, 6> numbers{};
       for (std::size_t p = 0; p < element.properties.size(); ++p) {
         const PlyProperty& property = element.properties[p];
         if (axis_of[p] < 0) {
@@ -104,9 +112,10 @@ class PlyParser {
         }
         const auto value = body.next(property.type);
         if (!value) return cut_short(element, i, body);
-        vertex[axis_of[p]] = static_cast<float>(*value);
+        numbers[static_cast<std::size_t>(axis_of[p])] = static_cast<float>(*value);
       }
-      surface_.mesh.vertices_mm.push_back(vertex);
+      surface_.mesh.vertices_mm.emplace_back(numbers[0], numbers[1], numbers[2]);
+      if (has_normals) normals_.emplace_back(numbers[3], numbers[4], numbers[5]);
     }
     return {};
   }
@@ -160,6 +169,7 @@ class PlyParser {
   PlyHeader header_;
   ParsedSurface surface_;
   std::vector<std::uint32_t> corners_;
+  std::vector<Eigen::Vector3f> normals_;
   bool is_split_ = false;  ///< vertices hold places in a picture, and are repeated along its seams
 };
 

@@ -5,6 +5,7 @@
 
 #include "firmware-host/files/surface_checks.hpp"
 #include "firmware-host/files/surface_file.hpp"
+#include "firmware-host/files/vertex_normals.hpp"
 #include "firmware-host/files/whole_file.hpp"
 
 namespace orcart {
@@ -25,7 +26,8 @@ std::string header_of(const Surface& surface) {
          comment("hash", checks::mesh_hash(surface.mesh)) + comment("series", surface.identity.series) +
          comment("frame_of_reference", surface.identity.frame_of_reference) + "element vertex " +
          std::to_string(surface.mesh.vertices_mm.size()) +
-         "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+         "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float "
+         "ny\nproperty float nz\nelement face " +
          std::to_string(surface.mesh.triangles.size()) +
          "\nproperty list uchar int vertex_indices\nend_header\n";
 }
@@ -33,13 +35,15 @@ std::string header_of(const Surface& surface) {
 }  // namespace
 
 Result<void> write_ply(const std::filesystem::path& file, const Surface& surface) {
-  constexpr std::size_t kVertexBytes = 12, kFaceBytes = 13;
+  constexpr std::size_t kVertexBytes = 24, kPlaceBytes = 12, kFaceBytes = 13;
   const TriangleMesh& mesh = surface.mesh;
   std::string text = header_of(surface);
   std::size_t at = text.size();
   text.resize(at + mesh.vertices_mm.size() * kVertexBytes + mesh.triangles.size() * kFaceBytes);
-  for (const Eigen::Vector3f& vertex : mesh.vertices_mm) {
-    std::memcpy(text.data() + at, vertex.data(), kVertexBytes);
+  const std::vector<Eigen::Vector3f> normals = vertex_normals(mesh);
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    std::memcpy(text.data() + at, mesh.vertices_mm[v].data(), kPlaceBytes);
+    std::memcpy(text.data() + at + kPlaceBytes, normals[v].data(), kPlaceBytes);
     at += kVertexBytes;
   }
   for (const auto& triangle : mesh.triangles) {

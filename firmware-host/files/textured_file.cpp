@@ -12,6 +12,7 @@
 #include "firmware-host/files/surface_checks.hpp"
 #include "firmware-host/files/textured_glb.hpp"
 #include "firmware-host/files/textured_split.hpp"
+#include "firmware-host/files/vertex_normals.hpp"
 #include "firmware-host/files/whole_file.hpp"
 
 namespace orcart {
@@ -96,6 +97,11 @@ std::string obj_text(const TexturedSurface& textured, const std::string& mtl_nam
     for (const float coordinate : vertex) append(text += ' ', coordinate);
     text += '\n';
   }
+  for (const Eigen::Vector3f& normal : vertex_normals(textured.surface.mesh)) {
+    text += "vn";
+    for (const float coordinate : normal) append(text += ' ', coordinate);
+    text += '\n';
+  }
   for (const auto& corners : textured.corners_uv)
     for (const Eigen::Vector2f& uv : corners) {
       append(text += "vt ", uv.x());
@@ -109,6 +115,7 @@ std::string obj_text(const TexturedSurface& textured, const std::string& mtl_nam
     for (const std::uint32_t vertex : triangle) {
       append(text += ' ', vertex + 1);
       append(text += '/', ++place);
+      append(text += '/', vertex + 1);
     }
     text += '\n';
   }
@@ -131,10 +138,13 @@ std::string ply_bytes(const TexturedSurface& textured, const std::string& png_na
       "ply\nformat binary_little_endian 1.0\n" + identity_comments("comment ", textured.surface) +
       "comment TextureFile " + png_name + "\nelement vertex " + std::to_string(split.vertex_of.size()) +
       "\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\n"
       "property float texture_u\nproperty float texture_v\nelement face " +
       std::to_string(split.indices.size() / 3) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::vector<Eigen::Vector3f> normals = vertex_normals(textured.surface.mesh);
   for (std::size_t v = 0; v < split.vertex_of.size(); ++v) {
     append_bytes(text, textured.surface.mesh.vertices_mm[split.vertex_of[v]].data(), 3);
+    append_bytes(text, normals[split.vertex_of[v]].data(), 3);
     append_bytes(text, split.places[v].data(), 2);
   }
   for (std::size_t i = 0; i < split.indices.size(); i += 3) {

@@ -12,23 +12,12 @@
 
 #include "firmware-host/files/surface_checks.hpp"
 #include "firmware-host/files/textured_split.hpp"
+#include "firmware-host/files/vertex_normals.hpp"
 
 namespace orcart {
 namespace {
 
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertices = 34962, kIndices = 34963;
-
-std::vector<Eigen::Vector3f> vertex_normals(const TriangleMesh& mesh) {
-  std::vector<Eigen::Vector3f> normals(mesh.vertices_mm.size(), Eigen::Vector3f::Zero());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Eigen::Vector3f& corner = mesh.vertices_mm[a];
-    const Eigen::Vector3f doubled_area = (mesh.vertices_mm[b] - corner).cross(mesh.vertices_mm[c] - corner);
-    for (const std::uint32_t vertex : {a, b, c}) normals[vertex] += doubled_area;
-  }
-  for (Eigen::Vector3f& normal : normals)
-    normal = normal.norm() > 0 ? Eigen::Vector3f(normal.normalized()) : Eigen::Vector3f::UnitZ();
-  return normals;
-}
 
 struct GlbMesh {
   std::vector<Eigen::Vector3f> positions_mm, normals;

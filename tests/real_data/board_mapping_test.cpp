@@ -106,9 +106,9 @@ cv::Mat seen_by_a_viewer(const std::filesystem::path& obj, const PlaneExtent& ex
       places.emplace_back(x * texture.width_px - 0.5, (1 - y) * texture.height_px - 0.5);
     if (kind != "f") continue;
     Eigen::Matrix<double, 2, 3> mm, uv;
-    std::size_t vertex = 0, place = 0;
+    std::size_t vertex = 0, place = 0, normal = 0;
     char slash = 0;
-    for (int corner = 0; corner < 3 && words >> vertex >> slash >> place; ++corner) {
+    for (int corner = 0; corner < 3 && words >> vertex >> slash >> place >> slash >> normal; ++corner) {
       mm.col(corner) = vertices.at(vertex - 1) - extent.low_mm.cast<double>();
       uv.col(corner) = places.at(place - 1);
     }

@@ -49,7 +49,8 @@ TEST(TexturedFile, AnObjNamesItsMaterialAndThatItsPicture) {
   const std::string obj = text_of(folder / "painted.obj");
   EXPECT_NE(obj.find("# SPACE=LPS\n"), std::string::npos);
   EXPECT_NE(obj.find("\nmtllib painted.mtl\nv 0 0 0.1\n"), std::string::npos);
-  EXPECT_NE(obj.find("\nvt 0 0.75\nusemtl painted\nf 1/1 2/2 3/3\nf 1/4 3/5 4/6\n"), std::string::npos);
+  EXPECT_NE(obj.find("\nvt 0 0.75\nusemtl painted\nf 1/1/1 2/2/2 3/3/3\nf 1/4/1 3/5/3 4/6/4\n"),
+            std::string::npos);
   const std::string mtl = text_of(folder / "painted.mtl");
   EXPECT_NE(mtl.find("newmtl painted\n"), std::string::npos);
   EXPECT_NE(mtl.find("map_Kd painted.png\n"), std::string::npos);
@@ -82,10 +83,10 @@ TEST(TexturedFile, APlyHoldsAPlaceForEachVertex) {
   EXPECT_EQ(folder.count(), 2U);
   const std::string ply = text_of(folder / "painted.ply");
   EXPECT_NE(ply.find("comment TextureFile painted.png\n"), std::string::npos);
-  const std::size_t vertices = ply.find("end_header\n") + 11, vertex = 20, face = 1 + 12;
+  const std::size_t vertices = ply.find("end_header\n") + 11, vertex = 32, face = 1 + 12;
   ASSERT_EQ(ply.size(), vertices + 4 * vertex + 2 * face);
   std::array<float, 2> third{};
-  std::memcpy(third.data(), ply.data() + vertices + 2 * vertex + 12, 8);
+  std::memcpy(third.data(), ply.data() + vertices + 2 * vertex + 24, 8);
   EXPECT_EQ(third, (std::array<float, 2>{0.5F, 1}));
 }
 

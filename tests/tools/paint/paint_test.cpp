@@ -95,9 +95,9 @@ std::vector<Corner> corners_of(const std::filesystem::path& obj, const Picture& 
     if (kind == "v" && words >> x >> y >> z) positions.emplace_back(x, y, z);
     if (kind == "vt" && words >> x >> y)
       places.emplace_back(x * picture.width_px, (1 - y) * picture.height_px);
-    std::size_t vertex = 0, place = 0;
+    std::size_t vertex = 0, place = 0, normal = 0;
     char slash = 0;
-    while (kind == "f" && words >> vertex >> slash >> place)
+    while (kind == "f" && words >> vertex >> slash >> place >> slash >> normal)
       corners.push_back({positions.at(vertex - 1), places.at(place - 1)});
   }
   return corners;
