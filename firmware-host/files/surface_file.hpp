@@ -28,8 +28,8 @@ struct SurfaceNotes {
 Result<Surface> read_surface(const std::filesystem::path& file, SurfaceNotes* notes = nullptr,
                              std::optional<Space> where_unstated = std::nullopt);
 
-/// Binary little-endian PLY with the identity in comments and vertex_normals(). Written beside and renamed:
-/// never half a file.
+/// Binary little-endian PLY with the identity in comments and angle_weighted_normals(). Written beside and
+/// renamed: never half a file.
 Result<void> write_ply(const std::filesystem::path& file, const Surface& surface);
 
 /// Checks a mesh made in memory (LPS mm) the same way and gives it its hash; `name` is for messages.

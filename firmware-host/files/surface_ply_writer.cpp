@@ -40,7 +40,7 @@ Result<void> write_ply(const std::filesystem::path& file, const Surface& surface
   std::string text = header_of(surface);
   std::size_t at = text.size();
   text.resize(at + mesh.vertices_mm.size() * kVertexBytes + mesh.triangles.size() * kFaceBytes);
-  const std::vector<Eigen::Vector3f> normals = vertex_normals(mesh);
+  const std::vector<Eigen::Vector3f> normals = angle_weighted_normals(mesh);
   for (std::size_t v = 0; v < normals.size(); ++v) {
     std::memcpy(text.data() + at, mesh.vertices_mm[v].data(), kPlaceBytes);
     std::memcpy(text.data() + at + kPlaceBytes, normals[v].data(), kPlaceBytes);

@@ -97,7 +97,7 @@ std::string obj_text(const TexturedSurface& textured, const std::string& mtl_nam
     for (const float coordinate : vertex) append(text += ' ', coordinate);
     text += '\n';
   }
-  for (const Eigen::Vector3f& normal : vertex_normals(textured.surface.mesh)) {
+  for (const Eigen::Vector3f& normal : angle_weighted_normals(textured.surface.mesh)) {
     text += "vn";
     for (const float coordinate : normal) append(text += ' ', coordinate);
     text += '\n';
@@ -141,7 +141,7 @@ std::string ply_bytes(const TexturedSurface& textured, const std::string& png_na
       "property float nx\nproperty float ny\nproperty float nz\n"
       "property float texture_u\nproperty float texture_v\nelement face " +
       std::to_string(split.indices.size() / 3) + "\nproperty list uchar int vertex_indices\nend_header\n";
-  const std::vector<Eigen::Vector3f> normals = vertex_normals(textured.surface.mesh);
+  const std::vector<Eigen::Vector3f> normals = angle_weighted_normals(textured.surface.mesh);
   for (std::size_t v = 0; v < split.vertex_of.size(); ++v) {
     append_bytes(text, textured.surface.mesh.vertices_mm[split.vertex_of[v]].data(), 3);
     append_bytes(text, normals[split.vertex_of[v]].data(), 3);

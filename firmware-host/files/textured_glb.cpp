@@ -28,7 +28,7 @@ struct GlbMesh {
 GlbMesh glb_mesh(const TexturedSurface& textured) {
   const TriangleMesh& mesh = textured.surface.mesh;
   SplitSurface split = split_along_seams(textured);
-  const std::vector<Eigen::Vector3f> normals = vertex_normals(mesh);
+  const std::vector<Eigen::Vector3f> normals = angle_weighted_normals(mesh);
   GlbMesh out;
   for (const std::uint32_t vertex : split.vertex_of) {
     out.positions_mm.push_back(mesh.vertices_mm[vertex]);

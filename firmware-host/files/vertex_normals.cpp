@@ -15,7 +15,7 @@ Eigen::Vector3f cross_of(const TriangleMesh& mesh, const std::array<std::uint32_
 
 }  // namespace
 
-std::vector<Eigen::Vector3f> vertex_normals(const TriangleMesh& mesh) {
+std::vector<Eigen::Vector3f> angle_weighted_normals(const TriangleMesh& mesh) {
   std::vector<Eigen::Vector3f> normals(mesh.vertices_mm.size(), Eigen::Vector3f::Zero());
   for (const auto& t : mesh.triangles) {
     const Eigen::Vector3f cross = cross_of(mesh, t);

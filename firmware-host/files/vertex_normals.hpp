@@ -10,7 +10,7 @@ namespace orcart {
 /// Unit, outward where the triangles are counter-clockwise from outside: the triangles' normals, each by its
 /// angle at the vertex (Thuermer and Wuethrich 1998), so that they do not depend on how a flat part is cut
 /// into triangles. (0, 0, 1) at a vertex without area.
-std::vector<Eigen::Vector3f> vertex_normals(const TriangleMesh& mesh);
+std::vector<Eigen::Vector3f> angle_weighted_normals(const TriangleMesh& mesh);
 
 /// How many corners of triangles have a stated normal on the side that their winding calls outside, and how
 /// many on the other. `normals` has one a vertex.

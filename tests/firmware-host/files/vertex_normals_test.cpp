@@ -24,7 +24,7 @@ TriangleMesh cube_corner() {
 }
 
 TEST(VertexNormals, DoNotDependOnHowAFaceIsCut) {
-  const auto normals = vertex_normals(cube_corner());
+  const auto normals = angle_weighted_normals(cube_corner());
   // x, y and z each stand at a right angle there.
   EXPECT_LT((normals[0] - Eigen::Vector3f::Ones().normalized()).norm(), 1e-6F);
   EXPECT_LT((normals[4] - Eigen::Vector3f::UnitZ()).norm(), 1e-6F);
@@ -36,7 +36,7 @@ TEST(VertexNormals, OfAVertexWithoutAreaAreUpright) {
   mesh.vertices_mm.emplace_back(6, 5, 5);
   mesh.vertices_mm.emplace_back(7, 5, 5);
   mesh.triangles.push_back({5, 6, 7});
-  EXPECT_EQ(vertex_normals(mesh)[6], Eigen::Vector3f::UnitZ());
+  EXPECT_EQ(angle_weighted_normals(mesh)[6], Eigen::Vector3f::UnitZ());
 }
 
 TEST(VertexNormals, AreWrittenIntoPly) {
