@@ -1,6 +1,8 @@
 // Reads cart.toml, section by section; the errors of all sections are told together.
 #include "firmware-host/app/cart_config.hpp"
 
+#include <numbers>
+
 #include "firmware-host/files/toml_reader.hpp"
 
 namespace orcart {
@@ -20,6 +22,8 @@ void read_files(TomlReader& reader, CartConfig& config) {
     config.passport.medium = scope.choice_of<Medium>(
         "medium", {{"air", Medium::air}, {"water", Medium::water}, {"saline", Medium::saline}});
   if (scope.has("serial")) config.passport.serial = scope.text("serial");
+  if (scope.has("turn_deg"))
+    config.turn_rad = scope.number("turn_deg", {.min = -360, .max = 360}) * std::numbers::pi / 180;
   config.passport.most_residual_px =
       scope.number("most_residual_px", {.min = 0.01, .max = 50, .fallback = 1.0});
   config.passport.most_residual_mm =

@@ -32,6 +32,7 @@ struct CartConfig {
   std::string name = "cart";
   std::filesystem::path surface, scope, registration;
   PassportWish passport;
+  std::optional<double> turn_rad;  ///< of the light post since the passport was made; nothing: not said
   SeenFrom seen_from = SeenFrom::outside;
   double texel_mm = 0.2;
   TextureMode mode = TextureMode::perspective;

@@ -54,7 +54,8 @@ Result<std::unique_ptr<KeptSession>> KeptSession::create(const Request& request)
                                                      .config_hash = hash_of(*cart),
                                                      .started_utc = utc_now(),
                                                      .started_at = request.started_at,
-                                                     .tracker_against_video = config.tracker_against_video});
+                                                     .tracker_against_video = config.tracker_against_video,
+                                                     .turn_rad = config.turn_rad.value_or(0)});
   if (!writer) return tl::unexpected(writer.error());
   const auto picture_bytes =
       packed_bytes(config.camera.format, config.camera.width_px, config.camera.height_px);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <numbers>
 
 #include <CLI/CLI.hpp>
 
@@ -50,6 +51,11 @@ tl::expected<Options, int> read_options(int argc, char** argv) {
          "another")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Medium>{
           {"air", Medium::air}, {"water", Medium::water}, {"saline", Medium::saline}}));
+  app.add_option_function<double>(
+         "--turn", [&options](const double& deg) { options.turn_rad = deg * std::numbers::pi / 180; },
+         "degrees by which the picture has turned since the passport was made (orcart turn tells it by the "
+         "notch)")
+      ->check(CLI::Range(-360.0, 360.0));
   app.add_option("--session", options.session, "keep every capture in this *.orcart file");
   app.add_option("--report", options.report_dir,
                  "write pictures, report.html and report.json into this folder");

@@ -20,6 +20,7 @@ struct Options {
   ClockKind clock = ClockKind::real;
   std::optional<Nanos> run_for;      ///< nothing: until SIGINT or SIGTERM, or the simulated procedure's end
   std::optional<Medium> medium;      ///< what the scope is used in; over [scope] medium
+  std::optional<double> turn_rad;    ///< of the light post since the passport was made; over [scope] turn_deg
   std::filesystem::path session;     ///< empty: nothing is kept
   std::filesystem::path report_dir;  ///< empty: no report
   std::filesystem::path trace;       ///< empty: nothing is traced

@@ -2,8 +2,28 @@
 #include "firmware-host/app/patient.hpp"
 
 #include "firmware-host/files/surface_file.hpp"
+#include "realtime/optics/scope_turn.hpp"
 
 namespace orcart {
+namespace {
+
+/// Puts the passport at the turn that was said. A scope that turns and of which nobody said how far is shown,
+/// not painted with.
+Result<void> turn_scope(const CartConfig& config, Patient& patient) {
+  if (!patient.scope.turning) {
+    if (!config.turn_rad) return {};
+    return fail(
+        config.scope.string() +
+        ": the passport has no [turning], so [scope] turn_deg means nothing; run orcart calibrate turn, "
+        "or remove turn_deg");
+  }
+  if (!config.turn_rad && patient.painting_blocked.empty())
+    patient.painting_blocked = "PAINTING BLOCKED: say [scope] turn_deg or --turn";
+  patient.scope = turned(patient.scope, config.turn_rad.value_or(0));
+  return {};
+}
+
+}  // namespace
 
 Result<Patient> read_patient(const CartConfig& config) {
   Patient patient;
@@ -33,6 +53,7 @@ Result<Patient> read_patient(const CartConfig& config) {
   // A procedure in which nothing is real has no medium to be asked for.
   if (config.any_device() || config.passport.medium)
     patient.painting_blocked = medium_objection(patient.scope.medium, config.passport.medium);
+  if (auto at = turn_scope(config, patient); !at) return tl::unexpected(at.error());
   if (!patient.painting_blocked.empty()) patient.notes.push_back(patient.painting_blocked);
 
   auto registration = read_registration(config.registration);

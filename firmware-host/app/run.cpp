@@ -261,6 +261,7 @@ ExitCode run(const Options& options) {
   if (!config) return complain(config.error(), ExitCode::configuration);
   if (options.run_for) config->simulation.duration_s = seconds(*options.run_for);
   if (options.medium) config->passport.medium = options.medium;
+  if (options.turn_rad) config->turn_rad = options.turn_rad;
   auto patient = read_patient(*config);
   if (!patient) return complain(patient.error(), ExitCode::configuration);
   for (const std::string& note : patient->notes) std::fprintf(stderr, "%s\n", note.c_str());

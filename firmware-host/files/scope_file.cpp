@@ -64,6 +64,27 @@ void read_rest(TomlReader& reader, ScopeModel& scope) {
   if (residuals.has("covariance")) scope.covariance = residuals.numbers("covariance", 0);
 }
 
+void read_turning(const TomlSection& section, ScopeModel& scope) {
+  if (!section.present()) return;
+  Turning turning;
+  turning.view_angle_rad = section.number("view_angle_rad", {.min = 0, .max = 2.1});
+  const auto centre = section.numbers("centre_px", 2);
+  if (centre.size() == 2) turning.centre_px = {centre[0], centre[1]};
+  turning.centre_deviation_px =
+      section.number("centre_deviation_px", {.min = 0, .max = 100, .fallback = 0.0});
+  turning.marker =
+      section.choice_of<TurnMarker>("marker", {{"shaft", TurnMarker::shaft}, {"head", TurnMarker::head}});
+  if (turning.marker == TurnMarker::head) {
+    const auto axis = section.numbers("axis", 3), point = section.numbers("axis_point_mm", 3);
+    if (axis.size() == 3) turning.axis = {axis[0], axis[1], axis[2]};
+    if (point.size() == 3) turning.axis_point_mm = {point[0], point[1], point[2]};
+    if (std::abs(turning.axis.norm() - 1) > 0.01)
+      section.refuse("axis", "is not of length 1; a direction in the marker's axes is accepted");
+    turning.axis.normalize();
+  }
+  scope.turning = turning;
+}
+
 /// Whether every pixel of the circle that lies in the picture has a direction: the lens is monotone there.
 /// The edge decides, and of a circle that reaches beyond the picture its part on the picture's border.
 bool sees_to_the_edge(const ScopeModel& scope) {
@@ -122,6 +143,7 @@ Result<ScopeModel> scope_from(TomlReader& reader, std::vector<std::string>* note
   scope.cone_half_angle_rad = cone.number("half_angle_rad", {.min = 0.02, .max = 1.48});
   scope.far_mm = cone.number("far_mm", {.min = 1, .max = 1000, .fallback = 60.0});
   read_rest(reader, scope);
+  read_turning(reader.section("turning"), scope);
   check_lens(lens, cone, scope);
   if (auto finished = finish(reader, notes); !finished) return tl::unexpected(finished.error());
   return scope;

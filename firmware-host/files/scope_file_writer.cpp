@@ -82,6 +82,17 @@ std::string lens_text(const Lens& lens) {
   return out;
 }
 
+std::string turning_text(const Turning& turning) {
+  const bool on_head = turning.marker == TurnMarker::head;
+  std::string out = "\n[turning]\n" + line("view_angle_rad", turning.view_angle_rad) +
+                    list("centre_px", turning.centre_px.data(), 2) +
+                    line("centre_deviation_px", turning.centre_deviation_px) +
+                    line("marker", std::string_view(on_head ? "head" : "shaft"));
+  if (on_head)
+    out += list("axis", turning.axis.data(), 3) + list("axis_point_mm", turning.axis_point_mm.data(), 3);
+  return out;
+}
+
 }  // namespace
 
 Result<void> write_scope(const std::filesystem::path& file, const ScopeModel& scope) {
@@ -99,6 +110,7 @@ Result<void> write_scope(const std::filesystem::path& file, const ScopeModel& sc
   if (scope.notch_rad) out += line("notch_rad", *scope.notch_rad);
   out += "\n[cone]\n" + line("half_angle_rad", scope.cone_half_angle_rad) + line("far_mm", scope.far_mm);
   out += "\n[poses]\n" + line("X_SC", scope.X_SC) + line("X_CE", scope.X_CE);
+  if (scope.turning) out += turning_text(*scope.turning);
   out += "\n[fall_off]\n" + line("reference_mm", scope.fall_off.reference_mm) +
          line("vignetting_cos_power", scope.fall_off.vignetting_cos_power);
   out += "\n[residuals]\n" + line("px", scope.residual_px) + line("mm", scope.residual_mm);

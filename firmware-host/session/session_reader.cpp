@@ -86,6 +86,9 @@ Result<SessionMeta> SessionReader::meta() {
       database_.integer("SELECT value FROM meta WHERE key = 'tracker_against_video_ns'");  // 0 where absent
   if (!shift) return tl::unexpected(shift.error());
   meta.tracker_against_video = Nanos{*shift};
+  const auto turn = database_.integer("SELECT value FROM meta WHERE key = 'turn_nrad'");
+  if (!turn) return tl::unexpected(turn.error());
+  meta.turn_rad = 1e-9 * static_cast<double>(*turn);
   return meta;
 }
 

@@ -23,6 +23,7 @@ struct SessionMeta {
   /// [sync] of the run: already added to mid-exposure where a capture's pose was looked up. Files from before
   /// it was kept have none, and read as 0.
   Nanos tracker_against_video{};
+  double turn_rad = 0;  ///< of the light post; in a capture's X_MC already. To 1e-9; absent reads as 0
 };
 
 /// What pictures were painted by. Texts are the files' own.

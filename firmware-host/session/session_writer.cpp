@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <ctime>
 #include <utility>
@@ -47,9 +48,12 @@ Result<void> write_meta(Database& database, const SessionMeta& meta) {
     if (const auto done = statement->with(key, value).step(); !done) return tl::unexpected(done.error());
   if (const auto done = statement->with(std::string_view("started_ns"), meta.started_at).step(); !done)
     return tl::unexpected(done.error());
-  const std::int64_t shift = meta.tracker_against_video.count();
-  if (const auto done = statement->with(std::string_view("tracker_against_video_ns"), shift).step(); !done)
-    return tl::unexpected(done.error());
+  const std::array<std::pair<std::string_view, std::int64_t>, 2> numbers{{
+      {"tracker_against_video_ns", meta.tracker_against_video.count()},
+      {"turn_nrad", std::llround(1e9 * meta.turn_rad)},
+  }};
+  for (const auto& [key, value] : numbers)
+    if (const auto done = statement->with(key, value).step(); !done) return tl::unexpected(done.error());
   return {};
 }
 

@@ -26,6 +26,19 @@ struct FallOff {
   double vignetting_cos_power = 0;  ///< vignetting = cos(angle)^power
 };
 
+/// What the scope's marker body sits on.
+enum class TurnMarker { shaft, head };
+
+/// A scope that can be turned against its camera head, as angled ones are. See scope_turn.hpp.
+struct Turning {
+  double view_angle_rad = 0;  ///< between view and shaft, as engraved or measured: 0, 30, 45, 70 degrees
+  Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();  ///< what the picture turns about on the sensor
+  double centre_deviation_px = 0;                       ///< standard deviation of it
+  TurnMarker marker = TurnMarker::shaft;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();          ///< head: of the shaft, towards the tip, in S
+  Eigen::Vector3d axis_point_mm = Eigen::Vector3d::Zero();  ///< head: a point on it, in S
+};
+
 /// The passport. Immutable after loading.
 struct ScopeModel {
   std::string name;
@@ -44,6 +57,7 @@ struct ScopeModel {
   double residual_px = 0;           ///< RMS of the calibration, pixels
   double residual_mm = 0;           ///< RMS of the hand-eye, mm
   std::optional<double> notch_rad;  ///< of the mask's notch about its centre, from x towards y, square pixels
+  std::optional<Turning> turning;   ///< nothing: head and scope are one piece, or are never turned
   /// Of fx fy cx cy and the free coefficients, square and row by row; empty where it is not known.
   std::vector<double> covariance;
 };

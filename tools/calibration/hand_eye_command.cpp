@@ -10,26 +10,6 @@
 namespace orcart {
 namespace {
 
-Result<std::vector<Pose<T, S>>> paired(const std::vector<std::filesystem::path>& images,
-                                       const PosesFile& poses, const std::filesystem::path& file) {
-  std::map<std::string, Pose<T, S>> by_name;
-  for (const NamedPose& pose : poses.poses) by_name[pose.name] = pose.X_TS;
-  std::vector<Pose<T, S>> result;
-  for (const auto& image : images) {
-    auto found = by_name.find(image.filename().string());
-    if (found == by_name.end()) found = by_name.find(image.stem().string());
-    if (found != by_name.end()) result.push_back(found->second);
-  }
-  if (result.size() == images.size()) return result;
-  if (poses.poses.size() != images.size())
-    return fail(file.string() + ": " + std::to_string(poses.poses.size()) + " poses for " +
-                std::to_string(images.size()) +
-                " pictures; one a picture, by its name or in order, is accepted");
-  result.clear();
-  for (const NamedPose& pose : poses.poses) result.push_back(pose.X_TS);
-  return result;
-}
-
 /// Corners that the passport's lens contradicts: farther off than six robust deviations, and at least a
 /// pixel.
 void drop_outliers(BoardView& view, const Pose<C, B>& X_CB, const Lens& lens) {
@@ -76,12 +56,32 @@ Result<void> refine(const std::vector<HandEyeView>& views, const Lens& lens, con
 
 }  // namespace
 
+Result<std::vector<Pose<T, S>>> poses_of_pictures(const std::vector<std::filesystem::path>& images,
+                                                  const PosesFile& poses, const std::filesystem::path& file) {
+  std::map<std::string, Pose<T, S>> by_name;
+  for (const NamedPose& pose : poses.poses) by_name[pose.name] = pose.X_TS;
+  std::vector<Pose<T, S>> result;
+  for (const auto& image : images) {
+    auto found = by_name.find(image.filename().string());
+    if (found == by_name.end()) found = by_name.find(image.stem().string());
+    if (found != by_name.end()) result.push_back(found->second);
+  }
+  if (result.size() == images.size()) return result;
+  if (poses.poses.size() != images.size())
+    return fail(file.string() + ": " + std::to_string(poses.poses.size()) + " poses for " +
+                std::to_string(images.size()) +
+                " pictures; one a picture, by its name or in order, is accepted");
+  result.clear();
+  for (const NamedPose& pose : poses.poses) result.push_back(pose.X_TS);
+  return result;
+}
+
 Result<HandEyeCalibration> calibrate_hand_eye(const HandEyeCommand& command, const ScopeModel& scope,
                                               const Progress& progress) {
   constexpr double kLargestScatter_mm = 8;
   const auto poses = read_poses(command.poses);
   if (!poses) return tl::unexpected(poses.error());
-  const auto X_TS = paired(command.images, *poses, command.poses);
+  const auto X_TS = poses_of_pictures(command.images, *poses, command.poses);
   if (!X_TS) return tl::unexpected(X_TS.error());
   const auto seen = see_boards(command.images, command.pattern, progress);
   if (!seen) return tl::unexpected(seen.error());

@@ -32,7 +32,10 @@ struct HandEyeCalibration {
 };
 
 /// Poses belong to pictures by name (of the file, with or without its ending) where all names are there, else
-/// by order.
+/// by order. `file` is for the sentence.
+Result<std::vector<Pose<T, S>>> poses_of_pictures(const std::vector<std::filesystem::path>& images,
+                                                  const PosesFile& poses, const std::filesystem::path& file);
+
 Result<HandEyeCalibration> calibrate_hand_eye(const HandEyeCommand& command, const ScopeModel& scope,
                                               const Progress& progress);
 

@@ -95,20 +95,34 @@ Circle best_circle(const std::vector<Eigen::Vector2d>& points, double largest) {
   return best;
 }
 
-/// The narrow place that sticks out of the circle, or into it, farthest.
+/// The narrow place that sticks out of the circle, or into it, farthest: the middle of the rays around it,
+/// each weighed by how far it is off.
 std::optional<double> notch_of(const Circle& circle, const std::vector<Eigen::Vector2d>& points) {
-  double farthest = std::max(2.5, 0.012 * circle.radius);
+  constexpr double kHalfWidth_rad = 0.2;
+  const double limit = std::max(2.5, 0.012 * circle.radius);
+  double farthest = limit;
   std::optional<double> notch;
   int off = 0;
+  const auto angle_of = [&](const Eigen::Vector2d& p) {
+    return std::atan2(p.y() - circle.centre.y(), p.x() - circle.centre.x());
+  };
   for (const Eigen::Vector2d& p : points) {
     const double deviation = std::abs((p - circle.centre).norm() - circle.radius);
-    if (deviation > std::max(2.5, 0.012 * circle.radius)) ++off;
+    if (deviation > limit) ++off;
     if (deviation <= farthest) continue;
     farthest = deviation;
-    notch = std::atan2(p.y() - circle.centre.y(), p.x() - circle.centre.x());
+    notch = angle_of(p);
   }
   // More than a twelfth of the circle is no notch but a rim that is badly lit.
-  return off >= 2 && off <= kRays / 12 ? notch : std::nullopt;
+  if (off < 2 || off > kRays / 12) return std::nullopt;
+  double sum = 0, weights = 0;
+  for (const Eigen::Vector2d& p : points) {
+    const double away = std::remainder(angle_of(p) - *notch, 2 * std::numbers::pi);
+    const double weight = std::abs((p - circle.centre).norm() - circle.radius) - 0.5 * limit;
+    if (std::abs(away) > kHalfWidth_rad || weight <= 0) continue;
+    sum += weight * away, weights += weight;
+  }
+  return std::remainder(*notch + sum / std::max(weights, 1e-9), 2 * std::numbers::pi);
 }
 
 template <class Visit>

@@ -13,6 +13,7 @@
 #include "firmware-host/files/text_cursor.hpp"
 #include "firmware-host/files/whole_file.hpp"
 #include "firmware-host/session/session_reader.hpp"
+#include "realtime/optics/scope_turn.hpp"
 #include "tools/registration/json_text.hpp"
 #include "tools/registration/poses_file.hpp"
 
@@ -59,10 +60,11 @@ Result<TimeRecording> read_session(const std::filesystem::path& file,
     return fail(file.string() + ": a session carries its own passport; --scope belongs to a folder");
   const auto calibration = session->calibration();
   if (!calibration) return tl::unexpected(calibration.error());
-  const auto scope = read_scope_text(calibration->scope_toml, file.string() + " (scope.toml)");
+  auto scope = read_scope_text(calibration->scope_toml, file.string() + " (scope.toml)");
   if (!scope) return tl::unexpected(scope.error());
   const auto meta = session->meta();
   if (!meta) return tl::unexpected(meta.error());
+  *scope = turned(*scope, meta->turn_rad);
   auto captures = session->captures();
   if (!captures) return tl::unexpected(captures.error());
   std::erase_if(*captures, [](const StoredCapture& c) { return !c.facts.streaming; });

@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
   orcart::add_rectify(app, exit_code);
   orcart::add_register(app, exit_code);
   orcart::add_surface(app, exit_code);
+  orcart::add_turn(app, exit_code);
   if (argc > 1 && is_unknown_verb(app, argv[1])) return 2;
   CLI11_PARSE(app, argc, argv);
   return exit_code;

@@ -103,6 +103,7 @@ void add_calibrate(CLI::App& app, int& exit_code) {
   add_medium(*verb, exit_code);
   add_time(*verb, exit_code);
   add_tip(*verb, exit_code);
+  add_turning(*verb, exit_code);
 }
 
 void add_rectify(CLI::App& app, int& exit_code) {
@@ -149,6 +150,10 @@ void add_calibrate(CLI::App& app, int& exit_code) {
 
 void add_rectify(CLI::App& app, int& exit_code) {
   add_absent(app, "rectify", "Pictures with the lens's distortion taken out", exit_code);
+}
+
+void add_turn(CLI::App& app, int& exit_code) {
+  add_absent(app, "turn", "How far an angled scope is turned, by a picture's notch", exit_code);
 }
 
 #endif

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "firmware-host/files/textured_file.hpp"
 #include "firmware-host/files/views_file.hpp"
 #include "firmware-host/offline/offline_painter.hpp"
+#include "realtime/optics/scope_turn.hpp"
 #include "render/atlas/colouring.hpp"
 #include "tools/orcart/paint_difference.hpp"
 #include "tools/orcart/verbs.hpp"
@@ -48,6 +50,7 @@ struct Arguments {
   OfflinePaintOptions options;
   ColourBy colour_by = ColourBy::picture;
   std::optional<Space> space;
+  double turn_deg = 0;
   bool json = false;
 };
 
@@ -123,6 +126,9 @@ Result<Inputs> read_inputs(const Arguments& arguments) {
   auto scope = read_scope(arguments.scope, &scope_notes);
   if (!scope) return tl::unexpected(scope.error());
   warn(scope_notes);
+  if (arguments.turn_deg != 0 && !scope->turning)
+    return fail(arguments.scope + ": the passport has no [turning], so --turn means nothing");
+  *scope = turned(*scope, arguments.turn_deg * std::numbers::pi / 180);
   auto views = read_views(arguments.views);
   if (!views) return tl::unexpected(views.error());
   warn(views->notes);
@@ -327,6 +333,8 @@ void add_paint(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   verb->add_option("--surface", arguments->surface, "PLY, STL or OBJ, mm")->required();
   verb->add_option("--scope", arguments->scope, "scope.toml, the calibration passport")->required();
+  verb->add_option("--turn", arguments->turn_deg,
+                   "degrees by which the pictures had turned since the passport was made");
   verb->add_option("--views", arguments->views, "views.csv")->required();
   verb->add_option("--mode", arguments->options.mode,
                    "perspective (default): through the calibrated lens; paper: as Dey et al. 2000")

@@ -24,6 +24,8 @@ void add_pivot(CLI::App& app, int& exit_code);
 void add_rectify(CLI::App& app, int& exit_code);
 void add_register(CLI::App& app, int& exit_code);
 void add_time(CLI::App& calibrate, int& exit_code);
+void add_turn(CLI::App& app, int& exit_code);
+void add_turning(CLI::App& calibrate, int& exit_code);
 void add_tip(CLI::App& calibrate, int& exit_code);
 void add_surface(CLI::App& app, int& exit_code);
 

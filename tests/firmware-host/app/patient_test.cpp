@@ -56,6 +56,28 @@ TEST(Patient, AnotherMediumThanThePassportsBlocksPaintingAndSaysSo) {
       << patient->painting_blocked;
 }
 
+TEST(Patient, AScopeThatTurnsIsPutAtItsTurnAndNotPaintedWithUntilItIsSaid) {
+  const TemporaryFolder folder;
+  CartConfig config = demo();
+  config.turn_rad = 0.5;
+  const auto senseless = read_patient(config);
+  ASSERT_FALSE(senseless);
+  EXPECT_NE(senseless.error().message.find("no [turning]"), std::string::npos) << senseless.error().message;
+
+  config.scope = folder.write("angled.toml", text_of(config.scope) +
+                                                 "\n[turning]\nview_angle_rad = 0.5236\ncentre_px = [320, "
+                                                 "240]\nmarker = \"shaft\"\n");
+  const auto patient = read_patient(config);
+  ASSERT_TRUE(patient) << patient.error().message;
+  EXPECT_EQ(patient->painting_blocked, "");
+  EXPECT_NE(patient->scope.lens.cx_px, 321.5);
+  config.turn_rad.reset();
+  const auto unsaid = read_patient(config);
+  ASSERT_TRUE(unsaid) << unsaid.error().message;
+  EXPECT_EQ(unsaid->painting_blocked, "PAINTING BLOCKED: say [scope] turn_deg or --turn");
+  EXPECT_EQ(unsaid->scope.lens.cx_px, 321.5);
+}
+
 TEST(Patient, RefusesAPassportThatHasExpired) {
   const TemporaryFolder folder;
   CartConfig config = demo();

@@ -106,6 +106,12 @@ ScopeModel scope_with(LensModel model) {
   scope.expires_on = "2027-11-20";
   scope.notch_rad = -0.21;
   scope.covariance = {2, 1.0 / 3, 1.0 / 3, 4};
+  scope.turning = Turning{.view_angle_rad = 0.5,
+                          .centre_px = {317.25, 1.0 / 3},
+                          .centre_deviation_px = 0.1,
+                          .marker = TurnMarker::head,
+                          .axis = {0.6, 0, 0.8},
+                          .axis_point_mm = {1.0 / 3, -2, 0}};
   return scope;
 }
 
@@ -135,6 +141,11 @@ TEST_P(EachLens, ComesBackAsItWasWritten) {
   EXPECT_EQ(back->expires_on, scope.expires_on);
   EXPECT_EQ(back->notch_rad, scope.notch_rad);
   EXPECT_EQ(back->covariance, scope.covariance);
+  ASSERT_TRUE(back->turning);
+  EXPECT_EQ(back->turning->centre_px, scope.turning->centre_px);
+  EXPECT_EQ(back->turning->marker, TurnMarker::head);
+  EXPECT_TRUE(back->turning->axis.isApprox(scope.turning->axis, 1e-14));
+  EXPECT_EQ(back->turning->axis_point_mm, scope.turning->axis_point_mm);
 }
 
 INSTANTIATE_TEST_SUITE_P(ScopeFile, EachLens,

@@ -28,7 +28,8 @@ SessionMeta some_meta() {
           .config_hash = "ab12",
           .started_utc = "2026-05-04T09:30:00Z",
           .started_at = instant_from_nanos(77),
-          .tracker_against_video = -12ms};
+          .tracker_against_video = -12ms,
+          .turn_rad = -0.25};
 }
 
 class SessionFile : public ::testing::Test {
@@ -120,6 +121,7 @@ TEST_F(SessionFile, KeepsMetaCalibrationEventsAndBudgets) {
   EXPECT_EQ(read.meta()->started_utc, "2026-05-04T09:30:00Z");
   EXPECT_EQ(read.meta()->started_at, instant_from_nanos(77));
   EXPECT_EQ(read.meta()->tracker_against_video, -12ms);
+  EXPECT_DOUBLE_EQ(read.meta()->turn_rad, -0.25);
   EXPECT_EQ(read.calibration()->scope_toml, "name = \"30 degree\"");
   EXPECT_EQ(read.calibration()->surface_hash, "cafe");
   ASSERT_EQ(read.events()->size(), 1U);

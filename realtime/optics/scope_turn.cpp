@@ -1,0 +1,62 @@
+// Points of the sensor go round a centre; C goes round its own axis by as much.
+#include "realtime/optics/scope_turn.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace orcart {
+namespace {
+
+/// Round the centre, in pixels made square by the lens's two focal lengths.
+Eigen::Vector2d round_centre(const ScopeModel& scope, const Eigen::Vector2d& pixel, double turn_rad) {
+  const double aspect = scope.lens.fy_px / scope.lens.fx_px;
+  const Eigen::Vector2d& centre = scope.turning->centre_px;
+  const double x = pixel.x() - centre.x(), y = (pixel.y() - centre.y()) / aspect;
+  const double c = std::cos(turn_rad), s = std::sin(turn_rad);
+  return {centre.x() + c * x - s * y, centre.y() + aspect * (s * x + c * y)};
+}
+
+Eigen::Matrix3d about(const Eigen::Vector3d& axis, double turn_rad) {
+  return Eigen::AngleAxisd(turn_rad, axis).toRotationMatrix();
+}
+
+}  // namespace
+
+TurnedOptics optics_at(const ScopeModel& scope, double turn_rad) noexcept {
+  TurnedOptics optics{.lens = scope.lens, .mask = scope.mask, .X_SC = scope.X_SC, .X_CE = scope.X_CE};
+  if (!scope.turning) return optics;
+  const Eigen::Vector2d middle = round_centre(scope, {scope.lens.cx_px, scope.lens.cy_px}, turn_rad);
+  optics.lens.cx_px = middle.x(), optics.lens.cy_px = middle.y();
+  if (scope.lens.model == LensModel::poly4)
+    optics.lens.distortion_centre_px = round_centre(scope, scope.lens.distortion_centre_px, turn_rad);
+  if (scope.lens.model == LensModel::brown) {
+    const double c = std::cos(turn_rad), s = std::sin(turn_rad);
+    const double p1 = scope.lens.coefficients[2], p2 = scope.lens.coefficients[3];  // (p2, p1) is a vector
+    optics.lens.coefficients[3] = c * p2 - s * p1;
+    optics.lens.coefficients[2] = s * p2 + c * p1;
+  }
+  const Eigen::Vector2d mask = round_centre(scope, {scope.mask.cx_px, scope.mask.cy_px}, turn_rad);
+  optics.mask.cx_px = mask.x(), optics.mask.cy_px = mask.y();
+  const Pose<C, C> on_sensor{.rotation = about(Eigen::Vector3d::UnitZ(), turn_rad)};
+  optics.X_SC = scope.X_SC * on_sensor.inverse();
+  optics.X_CE = on_sensor * scope.X_CE;
+  if (scope.turning->marker == TurnMarker::shaft) return optics;
+  const Eigen::Matrix3d under_head = about(scope.turning->axis, turn_rad);
+  const Eigen::Vector3d& point = scope.turning->axis_point_mm;
+  const Pose<S, S> swung{.rotation = under_head, .translation_mm = point - under_head * point};
+  optics.X_SC = swung * optics.X_SC;
+  return optics;
+}
+
+ScopeModel turned(const ScopeModel& scope, double turn_rad) {
+  const TurnedOptics optics = optics_at(scope, turn_rad);
+  ScopeModel at = scope;
+  at.lens = optics.lens;
+  at.mask = optics.mask;
+  at.X_SC = optics.X_SC;
+  at.X_CE = optics.X_CE;
+  if (scope.turning && at.notch_rad) at.notch_rad = std::remainder(*at.notch_rad + turn_rad, 2 * M_PI);
+  return at;
+}
+
+}  // namespace orcart

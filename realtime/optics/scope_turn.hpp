@@ -1,0 +1,28 @@
+// An angled scope whose light post turns against the camera head: the passport's optics at any turn.
+#pragma once
+
+#include "realtime/optics/scope_model.hpp"
+
+namespace orcart {
+
+/// What of a passport depends on the turn.
+struct TurnedOptics {
+  Lens lens;
+  CircularMask mask;
+  Pose<S, C> X_SC;
+  Pose<C, E> X_CE;
+};
+
+/// The optics when the picture has turned by `turn_rad` (from x towards y, in pixels made square) since the
+/// passport was made: what the notch has turned by. On the sensor everything goes round turning.centre_px, as
+/// an eyepiece does in its coupler. That is a turn of C about its z axis with centre, mask and decentring
+/// carried round (a radial lens does not notice the turn), so the lens models stay as they are. With the
+/// marker on the head the optics turn under it, about turning.axis; with the marker on the shaft they stay
+/// (Yamaguchi 2004, Wu and Jaramaz 2007). A passport without turning is answered as it is. Any thread;
+/// nothing is allocated.
+TurnedOptics optics_at(const ScopeModel& scope, double turn_rad) noexcept;
+
+/// The whole passport at a turn; its own turning is for the new zero. Off the real-time path.
+ScopeModel turned(const ScopeModel& scope, double turn_rad);
+
+}  // namespace orcart
