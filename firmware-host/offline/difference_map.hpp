@@ -1,7 +1,6 @@
 // Paper mode against perspective over the views of a painting, as colours on the surface and as a picture.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "firmware-host/files/picture_file.hpp"
@@ -35,8 +34,6 @@ class DifferenceMap {
  private:
   DifferenceMap(const Surface& surface, const ScopeModel& scope, const AtlasLayout& layout, RayScene rays,
                 Mapper mapper, const MapperLimits& limits);
-  std::array<std::uint8_t, 3> colour_at(const RayHit& hit, const Eigen::Vector3f& ray,
-                                        const std::vector<float>& shown_mm) const;
 
   const Surface* surface_;
   const ScopeModel* scope_;

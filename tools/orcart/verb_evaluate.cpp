@@ -27,6 +27,7 @@ constexpr const char* kFooter =
     "  orcart evaluate --page out/evaluation\n"
     "  orcart evaluate --noise vega --setups 200 --json\n"
     "  orcart evaluate --surface s.ply --scope scope.toml --seen-from outside --views views.csv\n"
+    "  orcart evaluate map --views views.csv --out predicted.glb\n"
     "  orcart evaluate session procedure.orcart --surface s.ply\n"
     "  orcart evaluate board image*.png --poses poses.csv --pattern chessboard:18x16:2mm\n";
 
@@ -129,6 +130,7 @@ void add_evaluate(CLI::App& app, int& exit_code) {
                    "views.csv: recorded pictures to compare in place of simulated ones");
   verb->add_option("--page", command.page, "a folder for a page with pictures and figures");
   verb->add_flag("--json", arguments->json, "the figures as JSON");
+  add_evaluate_map(*verb, exit_code);
   add_evaluate_session(*verb, exit_code);
 #ifdef ORCART_WITH_CALIBRATION
   add_evaluate_board(*verb, exit_code);

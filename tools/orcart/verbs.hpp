@@ -14,6 +14,7 @@ void add_decode(CLI::App& app, int& exit_code);
 void add_emulate(CLI::App& app, int& exit_code);
 void add_evaluate(CLI::App& app, int& exit_code);
 void add_evaluate_board(CLI::App& evaluate, int& exit_code);
+void add_evaluate_map(CLI::App& evaluate, int& exit_code);
 void add_evaluate_session(CLI::App& evaluate, int& exit_code);
 void add_latency(CLI::App& app, int& exit_code);
 void add_paint(CLI::App& app, int& exit_code);

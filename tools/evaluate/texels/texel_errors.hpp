@@ -1,0 +1,40 @@
+// The error that each painted texel must be expected to have, and whether independent draws agree.
+#pragma once
+
+#include "firmware-host/files/views_file.hpp"
+#include "render/atlas/atlas_layout.hpp"
+#include "render/atlas/texel_record.hpp"
+#include "tools/evaluate/propagation.hpp"
+#include "tools/evaluate/simulation.hpp"
+
+namespace orcart {
+
+/// What was painted, and by which view: the atlas with the record of each texel. Lent.
+struct PaintedTexels {
+  const AtlasLayout& layout;
+  const AtlasRecords& records;  ///< captures are numbered as the views are, from 1
+  const std::vector<View>& views;
+};
+
+/// RMS along the surface, mm, by first-order propagation through the capture that painted the texel; negative
+/// where nothing is painted or a ray grazes. Two threads.
+std::vector<float> predicted_rms_mm(const EvaluationScene& scene, const ErrorModel& model,
+                                    const std::vector<Eigen::Vector3d>& fiducials_M_mm,
+                                    const PaintedTexels& painted);
+
+/// How many points independent draws put onto another sheet of surface, or beside all.
+struct DrawnCoverage {
+  Coverage coverage;  ///< on the same sheet: what a prediction to the tangent plane can answer for
+  std::size_t jumped = 0, lost = 0;
+};
+
+/// `setups` times: every error is drawn anew, and for painted texels of chance (eight a view) it is counted
+/// whether the light that belongs there lands within the predicted 95 % ellipse.
+DrawnCoverage drawn_coverage(const EvaluationScene& scene, const ErrorModel& model,
+                             const std::vector<Eigen::Vector3d>& fiducials_M_mm, const PaintedTexels& painted,
+                             int setups, RandomStream& random);
+
+/// The capture of a view, moving as the model says: along the picture's x, turning about its y.
+Capture capture_of(const View& view, const ErrorModel& model);
+
+}  // namespace orcart
