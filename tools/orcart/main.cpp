@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   orcart::add_decode(app, exit_code);
   orcart::add_emulate(app, exit_code);
   orcart::add_evaluate(app, exit_code);
+  orcart::add_export(app, exit_code);
   orcart::add_latency(app, exit_code);
   orcart::add_paint(app, exit_code);
   orcart::add_probe(app, exit_code);

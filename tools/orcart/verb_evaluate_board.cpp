@@ -73,6 +73,14 @@ void add_evaluate_board(CLI::App& evaluate, int& exit_code) {
                    "of the body's markers about their middle, mm")
       ->check(CLI::Range(5.0, 500.0))
       ->capture_default_str();
+  verb->add_option("--depth-ratio", command.hand_eye.noise.depth_ratio,
+                   "marker noise along the sensor's z against x and y")
+      ->check(CLI::Range(1.0, 20.0))
+      ->capture_default_str();
+  verb->add_option("--poses-in", command.hand_eye.noise.poses_in,
+                   "tracker (the default), or reference: a marker body beside the board")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, PosesIn>{{"tracker", PosesIn::tracker}, {"reference", PosesIn::reference}}));
   verb->add_option("--texel-mm", command.texel_mm, "size of the paint's texels")
       ->check(CLI::Range(0.02, 1.0))
       ->capture_default_str();

@@ -16,6 +16,7 @@ void add_evaluate(CLI::App& app, int& exit_code);
 void add_evaluate_board(CLI::App& evaluate, int& exit_code);
 void add_evaluate_map(CLI::App& evaluate, int& exit_code);
 void add_evaluate_session(CLI::App& evaluate, int& exit_code);
+void add_export(CLI::App& app, int& exit_code);
 void add_latency(CLI::App& app, int& exit_code);
 void add_paint(CLI::App& app, int& exit_code);
 void add_probe(CLI::App& app, int& exit_code);

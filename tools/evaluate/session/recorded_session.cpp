@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "firmware-host/files/whole_file.hpp"
+#include "realtime/optics/scope_turn.hpp"
 
 namespace orcart {
 
@@ -79,7 +80,8 @@ Result<RecordedSession> RecordedSession::open(const std::filesystem::path& file)
   auto registration = read_text(calibration->registration_toml, file, "registration.toml",
                                 [](const std::filesystem::path& f) { return read_registration(f); });
   if (!registration) return tl::unexpected(registration.error());
-  session.scope_ = *std::move(scope);
+  session.turn_rad_ = meta->turn_rad;
+  session.scope_ = turned(*scope, meta->turn_rad);
   session.registration_ = *std::move(registration);
   session.surface_hash_ = calibration->surface_hash;
   auto captures = session.reader_.captures();

@@ -13,7 +13,9 @@ class RecordedSession {
   /// Refuses what is no session file, or holds no passport or registration that can be read.
   static Result<RecordedSession> open(const std::filesystem::path& file);
 
+  /// The passport at the turn of the light post that the session was made with.
   const ScopeModel& scope() const { return scope_; }
+  double turn_rad() const { return turn_rad_; }
   const RegistrationFile& registration() const { return registration_; }
   const std::string& surface_hash() const { return surface_hash_; }
   /// In the order of painting, those that were undone left out.
@@ -21,6 +23,8 @@ class RecordedSession {
   std::size_t undone() const { return undone_; }
   /// Of the picture's exposure, since the session began, s.
   double at_s(const StoredCapture& capture) const { return seconds(capture.exposure_start - started_at_); }
+  /// The camera's own bytes.
+  Result<StoredPicture> picture(const StoredCapture& capture) { return reader_.picture(capture.id); }
   /// Its luma as grey. Refuses a picture that is not of the passport's size.
   Result<TakenPicture> taken(const StoredCapture& capture);
 
@@ -34,6 +38,7 @@ class RecordedSession {
   std::vector<StoredCapture> captures_;
   std::size_t undone_ = 0;
   Instant started_at_{};
+  double turn_rad_ = 0;
 };
 
 /// The brightness of each pixel, repeated in red, green and blue. Refuses bytes that do not fit the size.

@@ -8,10 +8,13 @@
 
 #include "board/sim/tissue.hpp"
 #include "firmware-host/files/surface_file.hpp"
+#include "firmware-host/files/views_file.hpp"
 #include "firmware-host/session/session_writer.hpp"
 #include "tests/firmware-host/files/temporary_folder.hpp"
 #include "tests/tools/evaluate/ball_scene.hpp"
 #include "tools/evaluate/error_chain.hpp"
+#include "tools/evaluate/session/session_export.hpp"
+#include "tools/registration/poses_file.hpp"
 
 namespace orcart {
 namespace {
@@ -175,6 +178,53 @@ TEST_F(SessionConsistency, RefusesAnotherSurfaceAndTooFewCaptures) {
   ASSERT_FALSE(wrong);
   EXPECT_NE(wrong.error().message.find("bring the surface of that session"), std::string::npos);
   EXPECT_FALSE(evaluated(command(folder_ / "none.orcart")));
+}
+
+TEST_F(SessionConsistency, ASessionIsExportedAsFilesThatOtherVerbsRead) {
+  const auto session = write_session({{0}, {1, 0, true}, {2, 0.5}});
+  const auto report =
+      export_session({.session = session, .out = folder_ / "out"}, [](const std::string&, double) {});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->captures, 2U);
+  EXPECT_EQ(report->undone, 1U);
+  const auto views = read_views(folder_ / "out/views.csv");
+  ASSERT_TRUE(views) << views.error().message;
+  ASSERT_EQ(views->views.size(), 2U);
+  EXPECT_TRUE(views->notes.empty());
+  Pose<M, C> believed = pose(2);
+  believed.translation_mm.x() += 0.5;
+  EXPECT_LT((views->views[1].X_MC.translation_mm - believed.translation_mm).norm(), 1e-9);
+  EXPECT_EQ(views->views[1].image.filename(), "capture-0003.png");
+  const auto picture = read_picture(views->views[1].image);
+  ASSERT_TRUE(picture) << picture.error().message;
+  EXPECT_EQ(picture->width_px, kWidth);
+  // X_MC = X_MR X_RS X_SC: the poses lead back to the views.
+  const auto poses = read_poses(folder_ / "out/poses.csv");
+  ASSERT_TRUE(poses) << poses.error().message;
+  ASSERT_EQ(poses->poses.size(), 2U);
+  EXPECT_EQ(poses->poses[1].name, "capture-0003.png");
+  const auto scope = read_scope(folder_ / "out/scope.toml");
+  const auto registration = read_registration(folder_ / "out/registration.toml");
+  ASSERT_TRUE(scope && registration);
+  const Pose<R, S> X_RS{.rotation = poses->poses[1].X_TS.rotation,
+                        .translation_mm = poses->poses[1].X_TS.translation_mm};
+  const Pose<M, C> back = registration->X_MR * X_RS * scope->X_SC;
+  EXPECT_LT((back.translation_mm - believed.translation_mm).norm(), 1e-6);
+  EXPECT_LT((back.rotation - believed.rotation).norm(), 1e-9);
+  EXPECT_EQ(registration->surface_hash, hash_);
+}
+
+TEST_F(SessionConsistency, AnExportIsWholeOrNotThere) {
+  const auto session = write_session({{0}});
+  const auto ask = [&](const std::filesystem::path& from, const std::filesystem::path& out) {
+    return export_session({.session = from, .out = out}, [](const std::string&, double) {});
+  };
+  std::filesystem::create_directory(folder_ / "taken");
+  const auto before = folder_.count();
+  EXPECT_NE(ask(session, folder_ / "taken").error().message.find("is there already"), std::string::npos);
+  EXPECT_FALSE(ask(folder_ / "none.orcart", folder_ / "out"));
+  EXPECT_FALSE(ask(session, folder_ / "no/such/out"));
+  EXPECT_EQ(folder_.count(), before);
 }
 
 TEST(GreyOf, TakesTheLumaOfEachFormat) {
