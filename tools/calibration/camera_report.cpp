@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "tools/registration/json_text.hpp"
+#include "tools/registration/report_page.hpp"
 
 namespace orcart {
 namespace {
@@ -100,15 +101,7 @@ std::string plots(const CameraCalibration& c) {
 std::string picture_url(const cv::Mat& picture) {
   std::vector<uchar> bytes;
   cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, 82});
-  constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out = "data:image/jpeg;base64,";
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8U | (i + k < bytes.size() ? bytes[i + k] : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += i + k <= bytes.size() ? kLetters[group >> (18 - 6 * k) & 63U] : '=';
-  }
-  return out;
+  return picture_data_url("jpeg", std::as_bytes(std::span(bytes)));
 }
 
 std::string camera_text(const CameraCalibration& c) {

@@ -39,4 +39,8 @@ Result<std::vector<Pose<T, S>>> poses_of_pictures(const std::vector<std::filesys
 Result<HandEyeCalibration> calibrate_hand_eye(const HandEyeCommand& command, const ScopeModel& scope,
                                               const Progress& progress);
 
+/// Board's origin through each view, pixels against radius, and each picture with where tracker and hand-eye
+/// place its corners. `text` is the answer as the terminal shows it.
+std::string hand_eye_page(const HandEyeCalibration& calibration, const std::string& text);
+
 }  // namespace orcart

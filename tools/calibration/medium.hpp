@@ -34,4 +34,8 @@ std::optional<Eigen::Vector3d> seen_in_fluid(const ScopeModel& air, const Eigen:
 /// Refuses a passport that is not made in air, fluid that is air, and a window that is not known (X_CE).
 Result<MediumConversion> to_fluid(const ScopeModel& air, Medium fluid, const MediumDoubt& doubt);
 
+/// The view's angle against radius in air and fluid, and what one viewpoint leaves at each depth. `text` is
+/// the answer as the terminal shows it.
+std::string medium_page(const ScopeModel& air, const MediumConversion& fluid, const std::string& text);
+
 }  // namespace orcart

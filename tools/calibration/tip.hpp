@@ -48,4 +48,8 @@ struct TipCalibration {
 Result<TipCalibration> calibrate_tip(const TipCommand& command, const ScopeModel& scope,
                                      const Progress& progress);
 
+/// Distances known and seen, and each error with its view left out. `text` is the answer as the terminal
+/// shows it.
+std::string tip_page(const TipCalibration& calibration, const std::string& text);
+
 }  // namespace orcart

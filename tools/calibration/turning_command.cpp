@@ -120,7 +120,7 @@ std::string turning_page(const TurningCalibration& c) {
   constexpr std::array<const char*, 6> kColours{"#c22", "#2a2", "#07a", "#a60", "#80a", "#555"};
   Chart round{.title = "Corners going round the centre",
               .x_label = "px",
-              .y_label = "px (y down is up here)",
+              .y_label = "height less y, px",
               .series = {},
               .square = true};
   for (std::size_t i = 0; i < c.sights.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "firmware-host/files/scope_file.hpp"
+#include "firmware-host/files/whole_file.hpp"
 #include "tools/calibration/hand_eye_command.hpp"
 #include "tools/orcart/verbs.hpp"
 #include "tools/registration/json_text.hpp"
@@ -22,7 +23,7 @@ constexpr const char* kExample =
 
 struct Arguments {
   HandEyeCommand command;
-  std::string pattern, scope, out;
+  std::string pattern, scope, out, page;
   bool json = false;
 };
 
@@ -91,6 +92,11 @@ Result<void> run(Arguments& arguments) {
   if (!scope) return tl::unexpected(scope.error());
   const auto calibration = calibrate_hand_eye(arguments.command, *scope, {});
   if (!calibration) return tl::unexpected(calibration.error());
+  if (!arguments.page.empty())
+    if (auto written =
+            write_whole_file(arguments.page, hand_eye_page(*calibration, answer(*calibration, false)));
+        !written)
+      return written;
   if (auto written = write_scope(arguments.out.empty() ? arguments.scope : arguments.out, calibration->scope);
       !written)
     return written;
@@ -125,6 +131,7 @@ void add_hand_eye(CLI::App& calibrate, int& exit_code) {
   verb->add_option("--poses-in", arguments->command.noise.poses_in,
                    "tracker (the default), or reference: a marker body beside the board")
       ->transform(CLI::CheckedTransformer(frames));
+  verb->add_option("--page", arguments->page, "also one HTML page with residuals in each picture");
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   verb->callback([arguments, &exit_code] {
     const auto done = run(*arguments);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "firmware-host/files/scope_file.hpp"
+#include "firmware-host/files/whole_file.hpp"
 #include "tools/calibration/medium.hpp"
 #include "tools/orcart/verbs.hpp"
 #include "tools/registration/json_text.hpp"
@@ -19,12 +20,31 @@ constexpr const char* kExample =
     "--window-mm.";
 
 struct Arguments {
-  std::string scope, out;
+  std::string scope, out, page;
   Medium medium = Medium::saline;
   double window_mm = 0;
   MediumDoubt doubt;
   bool json = false;
 };
+
+std::string answer(const Arguments& arguments, const ScopeModel& air, const MediumConversion& fluid,
+                   bool as_json) {
+  const Lens& lens = fluid.scope.lens;
+  if (as_json)
+    return "{\"viewpoint_mm\": " + json::number(fluid.viewpoint_mm) +
+           ", \"viewpoint_rms_px\": " + json::number(fluid.viewpoint_rms_px) +
+           ", \"viewpoint_worst_px\": " + json::number(fluid.viewpoint_worst_px) +
+           ", \"added_px\": " + json::number(fluid.added_px) +
+           ", \"added_mm_at_20\": " + json::number(fluid.added_mm) +
+           ", \"fx_px\": " + json::number(lens.fx_px) + ", \"fy_px\": " + json::number(lens.fy_px) + "}\n";
+  return json::format("f %.2f %.2f px for %.2f %.2f in air; the optical centre moves back by %.3f mm\n",
+                      lens.fx_px, lens.fy_px, air.lens.fx_px, air.lens.fy_px, fluid.viewpoint_mm) +
+         json::format("one viewpoint leaves %.3f px RMS, %.3f px at most, between 5 and 60 mm\n",
+                      fluid.viewpoint_rms_px, fluid.viewpoint_worst_px) +
+         json::format(
+             "added to the passport's doubt: %.3f px, %.3f mm at 20 mm (window +- %.2f mm, index +- %.4f)\n",
+             fluid.added_px, fluid.added_mm, arguments.doubt.window_mm, arguments.doubt.index);
+}
 
 Result<void> run(const Arguments& arguments) {
   auto air = read_scope(arguments.scope);
@@ -32,26 +52,13 @@ Result<void> run(const Arguments& arguments) {
   if (arguments.window_mm > 0) air->X_CE.translation_mm = {0, 0, arguments.window_mm};
   const auto fluid = to_fluid(*air, arguments.medium, arguments.doubt);
   if (!fluid) return fail(arguments.scope + ": " + fluid.error().message);
+  if (!arguments.page.empty())
+    if (auto written = write_whole_file(arguments.page,
+                                        medium_page(*air, *fluid, answer(arguments, *air, *fluid, false)));
+        !written)
+      return written;
   if (auto written = write_scope(arguments.out, fluid->scope); !written) return written;
-  const Lens& lens = fluid->scope.lens;
-  const std::string text =
-      arguments.json
-          ? "{\"viewpoint_mm\": " + json::number(fluid->viewpoint_mm) +
-                ", \"viewpoint_rms_px\": " + json::number(fluid->viewpoint_rms_px) +
-                ", \"viewpoint_worst_px\": " + json::number(fluid->viewpoint_worst_px) +
-                ", \"added_px\": " + json::number(fluid->added_px) +
-                ", \"added_mm_at_20\": " + json::number(fluid->added_mm) +
-                ", \"fx_px\": " + json::number(lens.fx_px) + ", \"fy_px\": " + json::number(lens.fy_px) +
-                "}\n"
-          : json::format("f %.2f %.2f px for %.2f %.2f in air; the optical centre moves back by %.3f mm\n",
-                         lens.fx_px, lens.fy_px, air->lens.fx_px, air->lens.fy_px, fluid->viewpoint_mm) +
-                json::format("one viewpoint leaves %.3f px RMS, %.3f px at most, between 5 and 60 mm\n",
-                             fluid->viewpoint_rms_px, fluid->viewpoint_worst_px) +
-                json::format(
-                    "added to the passport's doubt: %.3f px, %.3f mm at 20 mm (window +- %.2f mm, index +- "
-                    "%.4f)\n",
-                    fluid->added_px, fluid->added_mm, arguments.doubt.window_mm, arguments.doubt.index);
-  std::fputs(text.c_str(), stdout);
+  std::fputs(answer(arguments, *air, *fluid, arguments.json).c_str(), stdout);
   return {};
 }
 
@@ -76,6 +83,7 @@ void add_medium(CLI::App& calibrate, int& exit_code) {
       ->check(CLI::Range(0.0, 0.2))
       ->capture_default_str();
   verb->add_option("--out", arguments->out, "the passport for the fluid")->required();
+  verb->add_option("--page", arguments->page, "also one HTML page with the lens in both media");
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   verb->callback([arguments, &exit_code] {
     const auto done = run(*arguments);

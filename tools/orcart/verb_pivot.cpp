@@ -17,7 +17,7 @@ constexpr const char* kExample =
     "16 numbers with or without a name or time stamp, or a folder of 4x4 matrices.";
 
 struct Arguments {
-  std::string poses, out, name = "pointer";
+  std::string poses, out, page, name = "pointer";
   bool json = false;
 };
 
@@ -44,22 +44,28 @@ std::string tool_text(const Arguments& arguments, const PivotFit& fit) {
          "\n";
 }
 
+std::string answer(const PivotFit& fit, bool as_json) {
+  if (as_json)
+    return "{\"robust\": " + solution_json(fit.robust) + ",\n \"all\": " + solution_json(fit.all) +
+           ",\n \"sweep_rad\": " + json::number(fit.sweep_rad) +
+           ", \"inlier_mm\": " + json::number(fit.inlier_mm) + "}\n";
+  return solution_text("agreeing", fit.robust) + solution_text("all     ", fit.all) +
+         json::format("sweep of %.0f degrees; poses farther off than %.2f mm were left out\n",
+                      fit.sweep_rad * 57.29578, fit.inlier_mm);
+}
+
 Result<void> run(const Arguments& arguments) {
   const auto poses = read_poses(arguments.poses);
   if (!poses) return tl::unexpected(poses.error());
   for (const std::string& note : poses->notes) std::fprintf(stderr, "note: %s\n", note.c_str());
   const auto fit = fit_pivot(poses->poses);
   if (!fit) return fail(arguments.poses + ": " + fit.error().message);
+  if (!arguments.page.empty())
+    if (auto written = write_whole_file(arguments.page, pivot_page(poses->poses, *fit, answer(*fit, false)));
+        !written)
+      return written;
   if (auto written = write_whole_file(arguments.out, tool_text(arguments, *fit)); !written) return written;
-  const std::string text =
-      arguments.json
-          ? "{\"robust\": " + solution_json(fit->robust) + ",\n \"all\": " + solution_json(fit->all) +
-                ",\n \"sweep_rad\": " + json::number(fit->sweep_rad) +
-                ", \"inlier_mm\": " + json::number(fit->inlier_mm) + "}\n"
-          : solution_text("agreeing", fit->robust) + solution_text("all     ", fit->all) +
-                json::format("sweep of %.0f degrees; poses farther off than %.2f mm were left out\n",
-                             fit->sweep_rad * 57.29578, fit->inlier_mm);
-  std::fputs(text.c_str(), stdout);
+  std::fputs(answer(*fit, arguments.json).c_str(), stdout);
   return {};
 }
 
@@ -72,6 +78,7 @@ void add_pivot(CLI::App& app, int& exit_code) {
   verb->add_option("poses", arguments->poses, "the sweep: a file or a folder")->required();
   verb->add_option("--name", arguments->name, "the pointer's name")->capture_default_str();
   verb->add_option("--out", arguments->out, "the tool's file")->required();
+  verb->add_option("--page", arguments->page, "also one HTML page with each pose's distance");
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   verb->callback([arguments, &exit_code] {
     const auto done = run(*arguments);

@@ -1,4 +1,6 @@
 // orcart register: the patient's reference in the mesh's space, from fiducials.
+#include <unistd.h>
+
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -6,11 +8,13 @@
 #include "firmware-host/files/picture_file.hpp"
 #include "firmware-host/files/scope_file.hpp"
 #include "firmware-host/files/surface_file.hpp"
+#include "firmware-host/files/whole_file.hpp"
 #include "realtime/geometry/ray_scene.hpp"
 #include "tools/mesh/mesh_pictures.hpp"
 #include "tools/orcart/verbs.hpp"
 #include "tools/registration/json_text.hpp"
 #include "tools/registration/register_points.hpp"
+#include "tools/registration/report_page.hpp"
 #include "tools/registration/sequence_file.hpp"
 #include "tools/registration/surface_refine.hpp"
 
@@ -30,7 +34,7 @@ struct Arguments {
   std::optional<Space> space;
   RegistrationTask task;
   std::vector<double> target, stylus_tip;
-  std::string surface_points, picture;
+  std::string surface_points, picture, page;
   double surface_error_mm = 0.5;
   bool json = false;
 };
@@ -49,6 +53,7 @@ Result<std::vector<NamedPoint>> moving_points(const Arguments& arguments) {
 struct OnSurface {
   std::optional<SurfaceRefinement> refinement;
   std::optional<SurfaceTre> tre;
+  std::string figure;  ///< HTML, where a page is wanted
 };
 
 std::string surface_json(const OnSurface& on) {
@@ -104,6 +109,20 @@ Result<void> draw_tre(const Registration& registration, const TriangleMesh& mesh
   return write_png(file, both.width_px, both.height_px, both.rgba);
 }
 
+/// The same picture as a part of a page.
+Result<std::string> tre_figure(const Registration& registration, const TriangleMesh& mesh, double worst_mm) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("orcart-tre-" + std::to_string(::getpid()) + ".png");
+  if (auto drawn = draw_tre(registration, mesh, worst_mm, file); !drawn) return tl::unexpected(drawn.error());
+  const auto bytes = read_whole_file(file, 64U << 20U);
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+  if (!bytes) return tl::unexpected(bytes.error());
+  return "<h2>Expected error over the surface</h2><p>Green: none. Yellow: half. Red: the most, " +
+         json::format("%.2f mm RMS", worst_mm) + ".</p><img style='max-width:100%' src='" +
+         picture_data_url("png", *bytes) + "'>";
+}
+
 Result<OnSurface> use_surface(const Arguments& arguments, const TriangleMesh& mesh,
                               Registration& registration) {
   OnSurface on;
@@ -117,6 +136,11 @@ Result<OnSurface> use_surface(const Arguments& arguments, const TriangleMesh& me
     on.refinement = *refinement;
   }
   on.tre = tre_over_surface(registration, mesh);
+  if (!arguments.page.empty()) {
+    auto figure = tre_figure(registration, mesh, on.tre->worst_mm);
+    if (!figure) return tl::unexpected(figure.error());
+    on.figure = std::move(*figure);
+  }
   if (arguments.picture.empty()) return on;
   if (auto drawn = draw_tre(registration, mesh, on.tre->worst_mm, arguments.picture); !drawn)
     return tl::unexpected(drawn.error());
@@ -181,6 +205,11 @@ Result<void> run(Arguments& arguments) {
   file.X_MR = registration->X_MR;
   file.fre_mm = registration->fre_mm;
   file.predicted_tre_mm = predicted_tre_mm(*registration, target);
+  if (!arguments.page.empty())
+    if (auto written = write_whole_file(
+            arguments.page, register_page(*registration, answer_text(*registration, target, on), on.figure));
+        !written)
+      return written;
   if (auto written = write_registration(arguments.out, file); !written) return written;
   std::fputs(
       (arguments.json ? answer_json(*registration, target, on) : answer_text(*registration, target, on))
@@ -231,6 +260,7 @@ void add_register(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.01, 20.0))
       ->capture_default_str();
   verb->add_option("--picture", arguments->picture, "a PNG of the surface, coloured by the expected error");
+  verb->add_option("--page", arguments->page, "also one HTML page with the errors of fiducials and targets");
   verb->add_option("--out", arguments->out, "registration.toml")->required();
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   verb->callback([arguments, &exit_code] {

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "firmware-host/files/scope_file.hpp"
+#include "firmware-host/files/whole_file.hpp"
 #include "tools/calibration/tip.hpp"
 #include "tools/orcart/verbs.hpp"
 #include "tools/registration/json_text.hpp"
@@ -19,7 +20,7 @@ constexpr const char* kExample =
 
 struct Arguments {
   TipCommand command;
-  std::string pattern, scope, out;
+  std::string pattern, scope, out, page;
   bool json = false;
 };
 
@@ -59,6 +60,10 @@ Result<void> run(Arguments& arguments) {
   if (!scope) return tl::unexpected(scope.error());
   const auto calibration = calibrate_tip(arguments.command, *scope, {});
   if (!calibration) return tl::unexpected(calibration.error());
+  if (!arguments.page.empty())
+    if (auto written = write_whole_file(arguments.page, tip_page(*calibration, answer(*calibration, false)));
+        !written)
+      return written;
   if (auto written = write_scope(arguments.out.empty() ? arguments.scope : arguments.out, calibration->scope);
       !written)
     return written;
@@ -80,6 +85,7 @@ void add_tip(CLI::App& calibrate, int& exit_code) {
   verb->add_option("--pattern", arguments->pattern, "as for `orcart calibrate camera`")->required();
   verb->add_option("--scope", arguments->scope, "the scope's passport")->required();
   verb->add_option("--out", arguments->out, "the passport to write; the one read unless told");
+  verb->add_option("--page", arguments->page, "also one HTML page with distances and errors");
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   verb->callback([arguments, &exit_code] {
     const auto done = run(*arguments);

@@ -1,6 +1,7 @@
 // Where a pointer's tip lies in its marker, from poses taken while it turns about a fixed point.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "realtime/base/result.hpp"
@@ -29,5 +30,9 @@ struct PivotFit {
 /// Refuses sweeps that leave the tip open, and says why: too few poses, hardly any turn, turns about one axis
 /// only.
 Result<PivotFit> fit_pivot(const std::vector<NamedPose>& poses);
+
+/// Each pose's distance from the pivot, and where the tool pointed. `text` is the answer as the terminal
+/// shows it.
+std::string pivot_page(const std::vector<NamedPose>& poses, const PivotFit& fit, const std::string& text);
 
 }  // namespace orcart

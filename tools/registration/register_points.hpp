@@ -45,6 +45,10 @@ struct Registration {
 /// Refuses fewer than three pairs, points on one line, and names that do not pair up.
 Result<Registration> register_points(const RegistrationTask& task);
 
+/// Each fiducial's error and the expected error away from them; `more` is HTML put below. `text` is the
+/// answer as the terminal shows it.
+std::string register_page(const Registration& registration, const std::string& text, const std::string& more);
+
 /// Expected target registration error, RMS, at a place of the mesh (Fitzpatrick, West and Maurer 1998,
 /// equation 46); by the pose's covariance where there is one.
 double predicted_tre_mm(const Registration& registration, const Eigen::Vector3d& target_mm);

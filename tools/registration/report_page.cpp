@@ -140,6 +140,19 @@ std::string drawn(const Series& one, const Frame& frame) {
 
 }  // namespace
 
+std::string picture_data_url(std::string_view kind, std::span<const std::byte> bytes) {
+  constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out = "data:image/" + std::string(kind) + ";base64,";
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8U | (i + k < bytes.size() ? std::to_integer<unsigned>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      out += i + k <= bytes.size() ? kLetters[group >> (18 - 6 * k) & 63U] : '=';
+  }
+  return out;
+}
+
 std::string html_escaped(std::string_view text) {
   std::string out;
   for (const char letter : text) {
@@ -176,7 +189,7 @@ std::string svg_chart(const Chart& chart) {
 std::string html_page(const Page& page) {
   return "<!doctype html><html lang='en'><meta charset='utf-8'><title>" + html_escaped(page.title) +
          "</title><style>body{font:15px sans-serif;margin:24px;max-width:1320px}"
-         "pre{background:#f4f4f4;padding:12px;overflow-x:auto}svg{margin:6px;font:11px sans-serif}"
+         "pre{background:#f4f4f4;padding:12px;white-space:pre-wrap}svg{margin:6px;font:11px sans-serif}"
          "figure{display:inline-block;margin:6px;vertical-align:top}figcaption{font-size:13px}"
          "img{max-width:420px}</style><h1>" +
          html_escaped(page.title) + "</h1><p>Research use only; not a medical device.</p><pre>" +

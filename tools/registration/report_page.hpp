@@ -1,6 +1,8 @@
 // The pages of calibration and registration: one self-contained HTML file with charts and pictures.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +32,9 @@ struct Chart {
 
 /// Inline SVG with axes that fit what is drawn. Points that are not finite are left out.
 std::string svg_chart(const Chart& chart);
+
+/// Bytes of a picture as a data URL, so that a page needs no other file. `kind`: "jpeg" or "png".
+std::string picture_data_url(std::string_view kind, std::span<const std::byte> bytes);
 
 /// "<" and "&" made harmless.
 std::string html_escaped(std::string_view text);
