@@ -10,6 +10,7 @@
 namespace orcart {
 namespace {
 
+constexpr double kEdge = 1.5;    ///< kept clear of, in standard deviations
 constexpr double kReach = 3;     ///< of the weights, in standard deviations
 constexpr double kGapLimit = 4;  ///< between neighbours, in standard deviations
 
@@ -27,14 +28,25 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector3d& vector) {
 }  // namespace
 
 PoseTrack::PoseTrack(std::vector<TrackedPose> samples, double smooth_s)
-    : samples_(std::move(samples)), smooth_s_(smooth_s) {}
+    : samples_(std::move(samples)), smooth_s_(smooth_s) {
+  const auto gap = [&](std::size_t i) {
+    return samples_[i].at_s - samples_[i - 1].at_s > kGapLimit * smooth_s_;
+  };
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    run_begins_s_.push_back(i == 0 || gap(i) ? samples_[i].at_s : run_begins_s_.back());
+  run_ends_s_.resize(samples_.size());
+  for (std::size_t i = samples_.size(); i > 0; --i)
+    run_ends_s_[i - 1] = i == samples_.size() || gap(i) ? samples_[i - 1].at_s : run_ends_s_[i];
+}
 
 std::optional<Pose<T, S>> PoseTrack::at(double t_s) const {
   const auto after = std::lower_bound(samples_.begin(), samples_.end(), t_s,
                                       [](const TrackedPose& s, double t) { return s.at_s < t; });
   if (after == samples_.end() || (after == samples_.begin() && after->at_s > t_s)) return std::nullopt;
   const auto before = after == samples_.begin() ? after : after - 1;
-  if (after->at_s - before->at_s > kGapLimit * smooth_s_) return std::nullopt;
+  const auto number = static_cast<std::size_t>(after - samples_.begin());
+  if (t_s - run_begins_s_[number] < kEdge * smooth_s_ || run_ends_s_[number] - t_s < kEdge * smooth_s_)
+    return std::nullopt;
   const TrackedPose& nearest = t_s - before->at_s < after->at_s - t_s ? *before : *after;
 
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();

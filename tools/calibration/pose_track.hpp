@@ -25,8 +25,8 @@ class PoseTrack {
   /// apart.
   PoseTrack(std::vector<TrackedPose> samples, double smooth_s);
 
-  /// Nothing outside the samples, or where the two samples next to the instant are more than four times
-  /// smooth_s apart.
+  /// Nothing within 1.5 smooth_s of the samples' ends and of gaps of more than four times smooth_s: there the
+  /// regression leans on one side, is noisier, and a fit would shun it.
   std::optional<Pose<T, S>> at(double t_s) const;
 
   const std::vector<TrackedPose>& samples() const { return samples_; }
@@ -34,6 +34,7 @@ class PoseTrack {
 
  private:
   std::vector<TrackedPose> samples_;
+  std::vector<double> run_begins_s_, run_ends_s_;  ///< of the run without gaps that each sample is in
   double smooth_s_;
 };
 

@@ -25,6 +25,23 @@ std::string refusal(const Result<LagFit>& fit) {
   return fit ? "accepted" : fit.error().message;
 }
 
+TEST(PoseTrack, FollowsAQuadraticAndSaysNothingBesideItsEndsAndGaps) {
+  std::vector<TrackedPose> samples;
+  for (int i = 0; i < 100; ++i) {
+    if (i > 40 && i < 60) continue;  // the tool was hidden
+    const double t = 0.02 * i;
+    samples.push_back({t, {.rotation = Eigen::Matrix3d::Identity(), .translation_mm = {t, 5 * t * t, 1}}});
+  }
+  const PoseTrack track(samples, 0.03);
+  for (const double t : {0.05, 0.311, 0.75, 1.25, 1.9}) {
+    const auto there = track.at(t);
+    ASSERT_TRUE(there) << t;
+    EXPECT_LT((there->translation_mm - Eigen::Vector3d(t, 5 * t * t, 1)).norm(), 1e-9) << t;
+  }
+  for (const double t : {-0.1, 0.0, 0.04, 0.77, 0.8, 1.0, 1.2, 1.24, 1.95, 2.1})
+    EXPECT_FALSE(track.at(t)) << t;
+}
+
 TEST(TimeLag, IsExactWithoutNoise) {
   for (const See see : {See::board, See::features})
     for (const double lag : {-0.050, -0.0137, 0.0, 0.021, 0.120}) {
