@@ -124,6 +124,9 @@ Result<HandEyeCalibration> calibrate_hand_eye(const HandEyeCommand& command, con
         result.names[static_cast<std::size_t>(worst - result.refined.scatters_mm.begin())].c_str(),
         kLargestScatter_mm));
   }
+  if (scope.X_CE.rotation.isIdentity(0) && scope.X_CE.translation_mm.isZero(0))
+    result.notes.emplace_back(
+        "X_CE is not known yet, so the window counts as the optical centre: run orcart calibrate tip");
   result.scope.lens = result.refined.lens;
   result.scope.X_SC = result.refined.X_SC;
   result.scope.residual_mm =
