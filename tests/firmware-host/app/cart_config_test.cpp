@@ -39,6 +39,17 @@ TEST(CartConfig, ReadsTheShippedDemo) {
     EXPECT_TRUE(std::filesystem::exists(file)) << file;
 }
 
+TEST(CartConfig, ReadsHowFarAnAngledScopeIsTurned) {
+  EXPECT_FALSE(read_cart(demo_cart())->turn_rad);
+  const TemporaryFolder folder;
+  const std::string text = replaced(text_of(demo_cart()), "[scope]\n", "[scope]\nturn_deg = 45\n");
+  const auto config = read_cart(folder.write("cart.toml", text));
+  ASSERT_TRUE(config) << config.error().message;
+  ASSERT_TRUE(config->turn_rad);
+  EXPECT_NEAR(*config->turn_rad, 0.78539816339744828, 1e-12);
+  EXPECT_TRUE(tells(complaint(replaced(text, "turn_deg = 45", "turn_deg = 450")), "turn_deg"));
+}
+
 TEST(CartConfig, ReadsHowPicturesArePutOntoTheSurface) {
   const TemporaryFolder folder;
   std::string text = replaced(text_of(demo_cart()), "policy = \"newest\"", "policy = \"best\"");

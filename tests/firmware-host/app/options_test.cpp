@@ -51,6 +51,12 @@ TEST(ReadOptions, TakesAWholeLine) {
   EXPECT_EQ(options->report_dir, "out");
 }
 
+TEST(ReadOptions, TakesTheTurnOfAnAngledScopeInDegrees) {
+  EXPECT_FALSE(options_of({"--cart", "c.toml"})->turn_rad);
+  EXPECT_NEAR(*options_of({"--cart", "c.toml", "--turn", "-90"})->turn_rad, -1.5707963267948966, 1e-12);
+  EXPECT_EQ(options_of({"--cart", "c.toml", "--turn", "400"}).error(), 2);
+}
+
 TEST(ReadOptions, EndsWellAfterHelpAndVersionAndBadlyAfterAWrongLine) {
   EXPECT_EQ(options_of({"--help"}).error(), 0);
   EXPECT_EQ(options_of({"--version"}).error(), 0);
