@@ -23,7 +23,9 @@ class SpscQueue {
  public:
   /// Takes the memory for `capacity` elements, once. A queue of capacity 0 refuses every push.
   explicit SpscQueue(std::size_t capacity)
-      : capacity_(capacity), mask_(std::bit_ceil(capacity) - 1), slots_(std::make_unique<T[]>(mask_ + 1)) {}
+      : capacity_(capacity),
+        mask_(std::bit_ceil(capacity) - 1),
+        slots_(std::make_unique<Slot[]>(mask_ + 1)) {}
 
   /// Producer. Full: counts a drop, changes nothing else and returns false.
   bool try_push(const T& element) noexcept {
@@ -33,28 +35,28 @@ class SpscQueue {
           head_.load(std::memory_order_acquire);  // partner: the release in try_pop, which freed the slot
       if (tail - head_seen_ >= capacity_) return count_drop();
     }
-    slots_[tail & mask_] = element;
-    tail_.store(tail + 1, std::memory_order_release);  // partner: the acquire of tail_ in try_pop
+    Slot& slot = slots_[tail & mask_];
+    slot.element = element;
+    tail_.store(tail + 1, std::memory_order_relaxed);       // for size(); no slot is read by it
+    slot.count.store(tail + 1, std::memory_order_release);  // partner: the acquire of count in try_pop
     return true;
   }
 
   /// Consumer. Empty: leaves `element` alone and returns false.
   bool try_pop(T& element) noexcept {
     const std::uint64_t head = head_.load(std::memory_order_relaxed);  // own index
-    if (head == tail_seen_) {
-      tail_seen_ =
-          tail_.load(std::memory_order_acquire);  // partner: the release in try_push, which filled the slot
-      if (head == tail_seen_) return false;
-    }
-    element = slots_[head & mask_];
+    const Slot& slot = slots_[head & mask_];
+    // Partner: the release in try_push, which filled the slot. Before that the count is at most head.
+    if (slot.count.load(std::memory_order_acquire) != head + 1) return false;
+    element = slot.element;
     head_.store(head + 1, std::memory_order_release);  // partner: the acquire of head_ in try_push
     return true;
   }
 
   /// Elements waiting: exact where both threads stand still, else a value of a moment ago.
   std::size_t size() const noexcept {
-    // Partner: the release in try_pop. A head once seen implies every tail up to it, so the difference is
-    // never negative.
+    // Partner: the release in try_pop, which came after try_push's of the slot and so after its tail: a head
+    // once seen implies every tail up to it, and the difference is never negative.
     const std::uint64_t head = head_.load(std::memory_order_acquire);
     const std::uint64_t tail = tail_.load(std::memory_order_relaxed);  // a count to look at; no slot is read
     return std::min(capacity_, static_cast<std::size_t>(tail - head));
@@ -76,14 +78,19 @@ class SpscQueue {
     return false;
   }
 
+  /// An element and its number travel in one cache line, if the element is below 57 bytes.
+  struct alignas(kCacheLine) Slot {
+    Atomic<std::uint64_t> count{0};  ///< elements pushed when this one was; 0: none yet
+    T element{};
+  };
+
   const std::size_t capacity_;
   const std::uint64_t mask_;
-  const std::unique_ptr<T[]> slots_;
+  const std::unique_ptr<Slot[]> slots_;
   alignas(kCacheLine) Atomic<std::uint64_t> tail_{0};  ///< next to be filled; written by the producer
   std::uint64_t head_seen_ = 0;                        ///< producer's last look at head_
   Atomic<std::uint64_t> dropped_{0};
   alignas(kCacheLine) Atomic<std::uint64_t> head_{0};  ///< next to be emptied; written by the consumer
-  std::uint64_t tail_seen_ = 0;                        ///< consumer's last look at tail_
 };
 
 }  // namespace orcart

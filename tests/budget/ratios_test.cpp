@@ -122,9 +122,9 @@ TEST(Ratios, OurThreadWakesAsSoonAsAPlainLoop) {
   EXPECT_LE(ours.p99, 1.5);
 }
 
-// A virtual machine's processors may lie so far apart that a bare cache line takes longer than a queue is
-// given: there the queue is held to what its two lines, count and slot, and their clock reading need.
-TEST(Ratios, AQueueHandsOverWithin300NanosecondsOrThreeCacheLines) {
+// A virtual machine's processors may lie so far apart that a bare cache line takes nearly as long as a queue
+// is given: there the queue, which sends one line and looks at one, is held to two.
+TEST(Ratios, AQueueHandsOverWithin300NanosecondsOrTwoCacheLines) {
   const std::vector<int> processors = allowed_processors();
   if (processors.size() < 2) GTEST_SKIP() << "two processors are wanted, one for each side of the queue";
   std::vector<Nanos> queue, line;
@@ -138,7 +138,7 @@ TEST(Ratios, AQueueHandsOverWithin300NanosecondsOrThreeCacheLines) {
   std::printf("  one way %lld ns, a bare cache line %lld ns (medians of %zu and %zu)\n",
               static_cast<long long>(by_queue.count()), static_cast<long long>(by_line.count()), queue.size(),
               line.size());
-  EXPECT_LE(by_queue, std::max<Nanos>(300ns, 3 * by_line));
+  EXPECT_LE(by_queue, std::max<Nanos>(300ns, 2 * by_line));
 }
 
 TEST(Ratios, TraceAndHistogramCostAtMost200NanosecondsAnEvent) {
