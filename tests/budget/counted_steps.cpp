@@ -1,9 +1,5 @@
 // Runs each step at its worst case for callgrind to count: one dump a step, named by it.
-#include <cstdio>
-#include <string>
-
 #include <hwy/nanobenchmark.h>
-#include <hwy/targets.h>
 
 #include "board/sim/picture_supply.hpp"
 #include "board/sim/simulated_frame_source.hpp"
@@ -14,11 +10,10 @@
 #include "firmware-host/stages/pedal_stage.hpp"
 #include "firmware-host/stages/sync_stage.hpp"
 #include "firmware-host/stages/tracker_stage.hpp"
+#include "tests/budget/counted.hpp"
 #include "tests/firmware-host/tracker/tracker_rig.hpp"
 #include "tests/realtime/mapper/mapper_fixture.hpp"
 #include "tests/realtime/sync/sync_samples.hpp"
-
-#include <valgrind/callgrind.h>
 
 // Highway's library times its timer before main(), by an instruction that valgrind does not know on every
 // machine; this takes the place of it, and nobody asks for the answer.
@@ -29,23 +24,12 @@ uint64_t hwy::platform::TimerResolution() {
 namespace orcart::testing {
 namespace {
 
-constexpr int kNoAvx2 = 77;
-
 std::unique_ptr<Lanes> lanes_of_the_cart() {
   return std::make_unique<Lanes>(LaneDepths{.poses = kPoseQueueDepth,
                                             .pedal = kPedalQueueDepth,
                                             .frames = kFrameQueueDepth,
                                             .orders = kPaintQueueDepth,
                                             .patches = kPatchSlots});
-}
-
-template <class Step>
-void count(const char* name, int size, Step&& step) {
-  CALLGRIND_ZERO_STATS;
-  CALLGRIND_TOGGLE_COLLECT;
-  step();
-  CALLGRIND_TOGGLE_COLLECT;
-  CALLGRIND_DUMP_STATS_AT((std::string(name) + "-" + std::to_string(size)).c_str());
 }
 
 /// As many edges as one step takes, each with its bounce a millisecond apart.
@@ -196,11 +180,8 @@ void mapper(int rows) {
 }  // namespace orcart::testing
 
 int main() {
-  // One instruction set wherever it runs: the cutout picks its vector code by what the processor has, and so
-  // do Embree and the C library, to which valgrind shows a processor with AVX2 wherever there is one.
   using namespace orcart::testing;
-  if ((hwy::SupportedTargets() & HWY_AVX2) == 0) return kNoAvx2;
-  hwy::SetSupportedTargetsForTest(HWY_AVX2);
+  if (!pin_to_avx2()) return kNoAvx2;
   CALLGRIND_STOP_INSTRUMENTATION;
   CALLGRIND_START_INSTRUMENTATION;
   for (const int edges : {16, 32}) pedal(edges);

@@ -1,0 +1,31 @@
+// One step for callgrind to count: a dump of its own, named by the step and its size.
+#pragma once
+
+#include <string>
+
+#include <hwy/targets.h>
+#include <valgrind/callgrind.h>
+
+namespace orcart::testing {
+
+constexpr int kNoAvx2 = 77;  ///< exit status
+
+/// One instruction set wherever it runs: the cutout picks its vector code by what the processor has, and so
+/// do Embree and the C library, to which valgrind shows a processor with AVX2 wherever there is one. False:
+/// none.
+inline bool pin_to_avx2() {
+  if ((hwy::SupportedTargets() & HWY_AVX2) == 0) return false;
+  hwy::SetSupportedTargetsForTest(HWY_AVX2);
+  return true;
+}
+
+template <class Step>
+void count(const char* name, int size, Step&& step) {
+  CALLGRIND_ZERO_STATS;
+  CALLGRIND_TOGGLE_COLLECT;
+  step();
+  CALLGRIND_TOGGLE_COLLECT;
+  CALLGRIND_DUMP_STATS_AT((std::string(name) + "-" + std::to_string(size)).c_str());
+}
+
+}  // namespace orcart::testing
