@@ -1,4 +1,5 @@
-// An OpenGL ES 3 context through EGL: surfaceless for files and simulation, on a GBM device for a panel.
+// An OpenGL ES 3 context through EGL: on a GBM device for a panel; for files and simulation on a GPU that EGL
+// lists, else surfaceless.
 #pragma once
 
 #include <memory>
@@ -13,7 +14,8 @@ enum class RenderClass { gpu, software };
 
 /// What app may hand to EGL without either side knowing the other: a gbm_device* or nothing.
 struct NativeDisplay {
-  void* gbm_device = nullptr;  ///< null: EGL_MESA_platform_surfaceless
+  void* gbm_device =
+      nullptr;  ///< null: the first GPU of EGL_EXT_device_enumeration, else EGL_MESA_platform_surfaceless
 };
 
 /// Owns display and context; the thread that calls make_current() is the only one that may draw.
@@ -33,6 +35,7 @@ class GlContext {
 
  private:
   struct State;
+  static Result<GlContext> on_display(void* display);
   std::unique_ptr<State> state_;
   explicit GlContext(std::unique_ptr<State> state);
 };
