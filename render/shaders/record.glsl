@@ -40,7 +40,7 @@ void put(vec3 colour, float weight, float core, uvec4 record) {
     weight *= 1.0 - shine;
 #endif
   }
-  if (weight < 0.002) discard;  // it would not change a byte
+  if (weight < 0.004) discard;  // below 1/255: whether it changes a byte is left to each driver
   o_paint = vec4(colour, weight);
   o_record = before.r == 0u || weight >= 0.5 ? record : before;
 }
