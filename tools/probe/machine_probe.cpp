@@ -9,12 +9,15 @@
 #include <array>
 #include <fstream>
 #include <iterator>
+#include <thread>
+
+#include "realtime/kernel/realtime_rights.hpp"
 
 namespace orcart {
 namespace {
 
 constexpr std::uint64_t kLockedMemoryWanted_bytes = 1ULL << 30;  // atlas, pictures, driver
-constexpr std::uint64_t kPriorityWanted = 82;                    // the pedal's thread, the highest
+constexpr int kPriorityWanted = 82;                              // the pedal's thread, the highest
 
 std::string first_line(const std::filesystem::path& file) {
   std::ifstream in(file);
@@ -50,7 +53,10 @@ ProcessRights rights_of_this_process() {
   ProcessRights rights{.root = ::geteuid() == 0};
   rlimit limit{};
   if (::getrlimit(RLIMIT_MEMLOCK, &limit) == 0) rights.locked_memory_bytes = limit.rlim_cur;
-  if (::getrlimit(RLIMIT_RTPRIO, &limit) == 0) rights.fifo_priority = limit.rlim_cur;
+  // Asked for, not concluded: a container or control group may refuse even root.
+  std::thread([&] {
+    rights.fifo = acquire_thread_rights({.name = "ask", .fifo_priority = kPriorityWanted}).fifo;
+  }).join();
   return rights;
 }
 
@@ -119,12 +125,13 @@ std::vector<Finding> probe_system(const std::filesystem::path& root, const Proce
   }
   found.push_back(memory);
   Finding priority{.area = "system", .name = "SCHED_FIFO"};
-  const bool high_enough = rights.root || rights.fifo_priority >= kPriorityWanted;
-  priority.details.push_back(rights.root ? "any priority, as root"
-                                         : "up to priority " + std::to_string(rights.fifo_priority));
-  if (!high_enough) {
+  priority.details.push_back("priority " + std::to_string(kPriorityWanted) +
+                             (rights.fifo ? " granted" : " refused"));
+  if (!rights.fifo) {
     priority.lack = "threads cannot have priority " + std::to_string(kPriorityWanted) + " of SCHED_FIFO";
-    priority.next = "start it by the systemd unit of board/cart (LimitRTPRIO=90)";
+    priority.next =
+        rights.root ? "give this container or control group real-time time (cpu.rt_runtime_us), or leave it"
+                    : "start it by the systemd unit of board/cart (LimitRTPRIO=90)";
   }
   found.push_back(priority);
   return found;

@@ -12,7 +12,7 @@ namespace orcart {
 /// What the process may do, asked of the kernel; numbers by hand in tests.
 struct ProcessRights {
   std::uint64_t locked_memory_bytes = 0;  ///< RLIMIT_MEMLOCK
-  std::uint64_t fifo_priority = 0;        ///< RLIMIT_RTPRIO
+  bool fifo = false;                      ///< SCHED_FIFO was asked for at the pedal's priority, and granted
   bool root = false;
 };
 ProcessRights rights_of_this_process();

@@ -50,7 +50,7 @@ TEST_F(MachineProbe, IsContentWithACart) {
   put("sys/kernel/realtime", "1");
   put("sys/devices/system/cpu/isolated", "2-3");
   put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "performance");
-  const auto found = probe_system(root(), {.locked_memory_bytes = ~0ULL, .fifo_priority = 90});
+  const auto found = probe_system(root(), {.locked_memory_bytes = ~0ULL, .fifo = true});
   EXPECT_EQ(ProbeReport{found}.lacks(), 0u);
   EXPECT_EQ(found[0].name, "kernel 6.1.0-40-rt-amd64");
   EXPECT_EQ(found[0].details[0], "PREEMPT_RT");
@@ -59,14 +59,17 @@ TEST_F(MachineProbe, IsContentWithACart) {
 TEST_F(MachineProbe, NamesEachLackOfAnOrdinaryMachineWithOneRemedy) {
   put("proc/sys/kernel/osrelease", "6.1.0-40-amd64");
   put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "powersave");
-  const auto found = probe_system(root(), {.locked_memory_bytes = 8U << 20, .fifo_priority = 0});
+  const auto found = probe_system(root(), {.locked_memory_bytes = 8U << 20, .fifo = false});
   EXPECT_EQ(ProbeReport{found}.lacks(), 4u);
   for (const Finding& finding : found) EXPECT_EQ(finding.lack.empty(), finding.next.empty());
 }
 
 TEST_F(MachineProbe, TakesRootForWhatItIs) {
   put("sys/kernel/realtime", "1");
-  EXPECT_EQ(ProbeReport{probe_system(root(), {.root = true})}.lacks(), 0u);
+  EXPECT_EQ(ProbeReport{probe_system(root(), {.fifo = true, .root = true})}.lacks(), 0u);
+  const auto contained = probe_system(root(), {.root = true});
+  EXPECT_EQ(ProbeReport{contained}.lacks(), 1u) << "a container may refuse SCHED_FIFO to root";
+  EXPECT_NE(contained.back().next.find("cpu.rt_runtime_us"), std::string::npos);
 }
 
 TEST(ProbeReport, TellsLacksWithTheirRemediesAndEscapesNames) {
