@@ -1,6 +1,7 @@
 // Counts are compared with what was told before.
 #include "firmware-host/app/budget_log.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace orcart {
@@ -26,7 +27,8 @@ std::vector<std::string> BudgetLog::news(const std::array<StageLedger, kStageCou
         milliseconds(cpu.max()));
     lines.emplace_back(line);
     told_[i] = missed;
-    next_[i] = now + kEvery;
+    pause_[i] = std::clamp(2 * pause_[i], kFirstPause, kLongestPause);
+    next_[i] = now + pause_[i];
   }
   return lines;
 }

@@ -13,7 +13,9 @@ namespace orcart {
 /// One thread, off the real-time path.
 class BudgetLog {
  public:
-  static constexpr Nanos kEvery = 1s;  ///< at most a line a stage
+  /// Between two lines of a stage: twice as long each time, so that a stage which misses all day fills no
+  /// log.
+  static constexpr Nanos kFirstPause = 1s, kLongestPause = 64s;
 
   /// Sentences about what is new since the last one of each stage; nothing while all are within their bounds.
   std::vector<std::string> news(const std::array<StageLedger, kStageCount>& ledgers, Instant now);
@@ -21,6 +23,7 @@ class BudgetLog {
  private:
   std::array<std::uint64_t, kStageCount> told_{};
   std::array<Instant, kStageCount> next_{};
+  std::array<Nanos, kStageCount> pause_{};
 };
 
 }  // namespace orcart
