@@ -101,8 +101,10 @@ LocalMap local_map(std::vector<const Marker*> markers, const Eigen::Vector2d& pl
 /// The median misfit of each marker with its nearest neighbours: large where the layout is the wrong one.
 double misfit_px(const std::vector<Marker>& markers) {
   std::vector<const Marker*> all;
-  for (const Marker& m : markers) all.push_back(&m);
   std::vector<double> misfits;
+  all.reserve(markers.size());
+  misfits.reserve(markers.size());
+  for (const Marker& m : markers) all.push_back(&m);
   for (const Marker& m : markers)
     misfits.push_back(local_map(all, m.square.cast<double>() + Eigen::Vector2d(0.5, 0.5), 4).worst_px);
   if (misfits.empty()) return 1e9;
