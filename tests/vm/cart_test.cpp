@@ -2,6 +2,7 @@
 // pedal, KMS panel, all at once; what it painted is compared with what was there.
 #include <atomic>
 #include <cstdlib>
+#include <functional>
 #include <iostream>
 #include <thread>
 
@@ -98,16 +99,29 @@ class RealDrivers : public ::testing::Test {
     ASSERT_TRUE(panel) << word_for(panel.error());
     devices.panel = std::move(*panel);
   }
-  /// The procedure, with the panel's picture taken near its end, while the camera still shows something.
-  void go(Cart& cart) {
+  Result<std::unique_ptr<Cart>> make_cart() {
+    return Cart::create({.config = config,
+                         .patient = *patient,
+                         .ports = {.tracker = *devices.tracker,
+                                   .camera = *devices.camera,
+                                   .pedal = *devices.pedal,
+                                   .panel = *devices.panel},
+                         .clock = clock,
+                         .longest_run_s = 90});
+  }
+  /// The procedure, something done to it in its midst, and the panel's picture taken near its end, while the
+  /// camera still shows something.
+  void go(
+      Cart& cart, const char* picture, const std::function<void()>& meanwhile = [] {}) {
     ASSERT_TRUE(cart.start());
     for (int i = 0; i < 300 && !room->is_tracking(); ++i) clock.sleep_until(clock.now() + 100ms);
     ASSERT_TRUE(room->is_tracking()) << "the tracker was not started within 30 s";
     Ticker ticker;
     const Instant start = clock.now() + 1s, end = start + room->duration();
     room->begin_at(start);
+    meanwhile();
     clock.sleep_until(end - 3s);
-    EXPECT_EQ(std::system("vm-host screendump cart.png"), 0);
+    EXPECT_EQ(std::system((std::string("vm-host screendump ") + picture).c_str()), 0);
     clock.sleep_until(end + 1s);
     ticker.stop();
     time_given = ticker.share();
@@ -124,7 +138,7 @@ class RealDrivers : public ::testing::Test {
 
 /// On the host, before: drawing in the guest would take minutes.
 TEST_F(RealDrivers, HaveTheirPicturesDrawn) {
-  EXPECT_TRUE(std::filesystem::exists(config.simulation.movie / "room.orcmovie"));
+  EXPECT_TRUE(std::filesystem::exists(config.simulation.movie / kRoomMovie));
 }
 
 struct Outcome {
@@ -149,16 +163,9 @@ Outcome outcome_of(const Cart& cart, const Room& room) {
 TEST_F(RealDrivers, TakeTheCartThroughTheProcedure) {
   ASSERT_NO_FATAL_FAILURE(open_tracker_and_camera());
   ASSERT_NO_FATAL_FAILURE(open_pedal_and_panel());
-  auto cart = Cart::create({.config = config,
-                            .patient = *patient,
-                            .ports = {.tracker = *devices.tracker,
-                                      .camera = *devices.camera,
-                                      .pedal = *devices.pedal,
-                                      .panel = *devices.panel},
-                            .clock = clock,
-                            .longest_run_s = 60});
+  auto cart = make_cart();
   ASSERT_TRUE(cart) << cart.error().message;
-  ASSERT_NO_FATAL_FAILURE(go(**cart));
+  ASSERT_NO_FATAL_FAILURE(go(**cart, "cart.png"));
 
   const CartFigures figures = (*cart)->figures();
   const Outcome outcome = outcome_of(**cart, *room);
@@ -181,6 +188,50 @@ TEST_F(RealDrivers, TakeTheCartThroughTheProcedure) {
     GTEST_SKIP() << "this machine is too busy: an idle thread got " << 100 * time_given << " % of its time";
   EXPECT_GE(outcome.painted, 2);
   EXPECT_GT((*cart)->painter().coverage(), 0.02);
+}
+
+/// The captures of presses between two instants.
+std::vector<const CaptureRecord*> pressed_between(const Cart& cart, Instant from, Instant to) {
+  std::vector<const CaptureRecord*> found;
+  for (std::size_t i = 0; i < cart.captures().size(); ++i)
+    if (const CaptureRecord& capture = cart.captures().at(i); capture.edge_at >= from && capture.edge_at < to)
+      found.push_back(&capture);
+  return found;
+}
+
+TEST_F(RealDrivers, PaintOnWhenTheTrackerWasPulledOutInMidProcedure) {
+  ASSERT_NO_FATAL_FAILURE(open_tracker_and_camera());
+  ASSERT_NO_FATAL_FAILURE(open_pedal_and_panel());
+  auto cart = make_cart();
+  ASSERT_TRUE(cart) << cart.error().message;
+  Instant gone{}, put_back{};
+  ASSERT_NO_FATAL_FAILURE(go(**cart, "cart_unplugged.png", [&] {
+    clock.sleep_until(clock.now() + 6s);
+    EXPECT_EQ(std::system("vm-host unplug tracker"), 0);
+    gone = clock.now();
+    clock.sleep_until(gone + 3s);
+    EXPECT_EQ(std::system("vm-host screendump cart_tracker_lost.png"), 0);
+    put_back = clock.now();
+    EXPECT_EQ(std::system("vm-host plug tracker"), 0);
+  }));
+
+  const Outcome outcome = outcome_of(**cart, *room);
+  const auto is_painted = [](const CaptureRecord* c) { return c->refusal == Refusal::none; };
+  const auto without = pressed_between(**cart, gone, put_back);
+  const auto after = pressed_between(**cart, put_back, Instant::max());
+  const auto painted_after = std::ranges::count_if(after, is_painted);
+  std::cout << "tracker away for " << seconds(put_back - gone) << " s: " << without.size()
+            << " presses without it; " << painted_after << " of " << after.size()
+            << " painted after; camera believed within " << outcome.worst_mm << " mm\n"
+            << CaptureLog{}.news((*cart)->captures()) << "an idle thread got " << 100 * time_given
+            << " % of its time\n";
+  EXPECT_EQ(static_cast<std::size_t>(outcome.painted + outcome.refused), room->presses());
+  EXPECT_EQ(std::ranges::count_if(without, is_painted), 0) << "painted by a pose that nobody had measured";
+  EXPECT_LE(outcome.worst_mm, 2.0);
+  if (painted_after < 1 && time_given < 0.5)
+    GTEST_SKIP() << "this machine is too busy: an idle thread got " << 100 * time_given << " % of its time";
+  EXPECT_GE(painted_after, 1) << "without a restart";
+  EXPECT_EQ((*cart)->status().tracker, Freshness::live);
 }
 
 }  // namespace
