@@ -36,7 +36,7 @@ StateWord word_for(Freshness freshness) {
 class Figure {
  public:
   Figure& whole(long value) {
-    at_ = std::to_chars(at_, end(), value).ptr;
+    length_ = static_cast<std::size_t>(std::to_chars(at(), end(), value).ptr - text_.data());
     return *this;
   }
   Figure& tenths(double value) {
@@ -45,16 +45,18 @@ class Figure {
     return whole(scaled % 10);
   }
   Figure& words(std::string_view text) {
-    const auto room = static_cast<std::size_t>(end() - at_);
-    at_ = std::copy_n(text.data(), std::min(text.size(), room), at_);
+    const std::size_t count = std::min(text.size(), text_.size() - length_);
+    std::copy_n(text.data(), count, at());
+    length_ += count;
     return *this;
   }
-  std::string_view view() const { return {text_.data(), static_cast<std::size_t>(at_ - text_.data())}; }
+  std::string_view view() const { return {text_.data(), length_}; }
 
  private:
+  char* at() { return text_.data() + length_; }
   char* end() { return text_.data() + text_.size(); }
   std::array<char, 80> text_{};
-  char* at_ = text_.data();
+  std::size_t length_ = 0;
 };
 
 /// Goes down the column, line by line.
@@ -174,21 +176,32 @@ void draw_banners(HudCanvas& canvas, const HudBox& view, const Status& status) {
               {text.data(), length});
 }
 
+void put_speed(Figure& figure, const Status& status, int detail) {
+  figure.whole(std::lround(status.rendered_hz)).words(" Hz");
+  if (status.software_rendering && (detail == 3 || (detail > 0 && status.budget_misses == 0)))
+    figure.words(", software");
+  if (status.budget_misses == 0 || detail == 0) return;
+  figure.words(", over budget ").whole(status.budget_misses);
+  if (detail > 1) figure.words(", last ").words(status.missed_stage);
+}
+
 void draw_bar(HudCanvas& canvas, const HudBox& bar, const Status& status) {
   const float unit = canvas.scale();
   const float base = bar.y + 0.5F * (bar.height + canvas.font().cap_height_px(TextStyle::fine));
-  float x = bar.x + 24 * unit;
+  const float left = bar.x + 24 * unit, right = bar.x + bar.width - 24 * unit;
+  float x = left;
   if (status.simulated) x = canvas.text({x, base}, TextStyle::strong, kWarn, "SIMULATED");
-  canvas.text(
+  x = canvas.text(
       {x, base}, TextStyle::fine, kQuiet,
       status.simulated ? "  -  research use, not a medical device" : "research use, not a medical device");
   Figure figure;
-  figure.whole(std::lround(status.rendered_hz)).words(" Hz");
-  if (status.software_rendering) figure.words(", software");
-  if (status.budget_misses > 0)
-    figure.words(", over budget ").whole(status.budget_misses).words(", last ").words(status.missed_stage);
-  canvas.text_ending({bar.x + bar.width - 24 * unit, base}, TextStyle::fine,
-                     status.budget_misses > 0 ? kWarn : kQuiet, figure.view());
+  for (int detail = 3; detail >= 0; --detail) {  // the most that fits beside it
+    figure = {};
+    put_speed(figure, status, detail);
+    if (canvas.font().width_px(TextStyle::fine, figure.view()) <= right - x - 16 * unit) break;
+  }
+  canvas.text_ending({right, base}, TextStyle::fine, status.budget_misses > 0 ? kWarn : kQuiet,
+                     figure.view());
 }
 
 }  // namespace

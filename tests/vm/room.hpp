@@ -26,14 +26,14 @@
 
 namespace orcart::testing {
 
-constexpr const char* kRoomMovie = "room-24s.orcmovie";
+constexpr const char* kRoomMovie = "room-36s.orcmovie";
 
 /// The demo, shorter, with fewer pictures a second than a software renderer in a software machine can show.
 inline Result<CartConfig> room_config(const std::filesystem::path& source,
                                       const std::filesystem::path& binary) {
   auto config = read_cart(source / "share/carts/demo.toml");
   if (!config) return config;
-  config->simulation.duration_s = 24;
+  config->simulation.duration_s = 36;
   config->simulation.movie = binary / "vm/movies";
   config->texel_mm = 0.3;
   config->camera.rate_hz = 10;

@@ -24,12 +24,13 @@ const Status kAllWell{.video = Freshness::live,
                       .latency_ms = 17.3F,
                       .rendered_hz = 30};
 
-Pixels drawn(const Status& status, InsetContent inset = InsetContent::picture) {
-  Offscreen target(kWidth, kHeight);
+Pixels drawn(const Status& status, InsetContent inset = InsetContent::picture, int width = kWidth,
+             int height = kHeight) {
+  Offscreen target(width, height);
   target.clear(0.06F, 0.07F, 0.08F);
-  auto canvas = HudCanvas::create({});
+  auto canvas = HudCanvas::create({.width_px = width, .height_px = height});
   EXPECT_TRUE(canvas.has_value());
-  const PanelLayout layout = panel_layout(kWidth, kHeight);
+  const PanelLayout layout = panel_layout(width, height);
   draw_grounds(*canvas, layout);
   draw_status(*canvas, layout, status, inset);
   canvas->flush();
@@ -145,6 +146,20 @@ TEST(StatusPanel, HasRoomForEveryWarningAtOnce) {
   keep_picture(p, "status_all_warnings");
   const HudBox seam{kLayout.column.x, kLayout.bar.y - 6, kLayout.column.width, 5};
   EXPECT_EQ(difference(p, drawn(kAllWell), seam), 0);
+}
+
+TEST(StatusPanel, NeverWritesOverTheMarkHoweverNarrowThePanelIs) {
+  constexpr int kNarrow = 640, kLow = 480;
+  Status late = kAllWell;
+  late.simulated = true;
+  const Pixels calm = drawn(late, InsetContent::picture, kNarrow, kLow);
+  late.software_rendering = true;
+  late.budget_misses = 306;
+  late.missed_stage = "render + submit";
+  const Pixels busy = drawn(late, InsetContent::picture, kNarrow, kLow);
+  const HudBox bar = panel_layout(kNarrow, kLow).bar;
+  EXPECT_EQ(difference(calm, busy, {0, bar.y, 340, bar.height}), 0) << "the mark ends at 330";
+  EXPECT_GT(difference(calm, busy, {340, bar.y, 300, bar.height}), 300) << "what fits is said beside it";
 }
 
 }  // namespace
