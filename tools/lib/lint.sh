@@ -24,10 +24,13 @@ check_tidy() {
   [ "$status" -eq 0 ]
 }
 
+# Not for clang 14, which has no std::source_location with GCC's library and refuses Relacy's templates.
+not_for_clang=tools/latency/channel_model.cpp
+
 # The sources the dev build compiles, latest change first.
 tidy_order() {
   local compiled
-  compiled=$(sed -n "s|^ *\"file\": \"$ORCART_ROOT/\(.*\)\".*|\1|p" "$ORCART_ROOT/build/dev/compile_commands.json" | sort -u)
+  compiled=$(sed -n "s|^ *\"file\": \"$ORCART_ROOT/\(.*\)\".*|\1|p" "$ORCART_ROOT/build/dev/compile_commands.json" | grep -vxF "$not_for_clang" | sort -u)
   {
     git -C "$ORCART_ROOT" diff --name-only HEAD 2>/dev/null
     git -C "$ORCART_ROOT" log -n 100 --name-only --format= 2>/dev/null

@@ -142,6 +142,7 @@ void add_latency(CLI::App& app, int& exit_code) {
   latency->add_option("--json", arguments->json, "write the figures into this file");
   latency->add_option("--html", arguments->html, "write the report with plots into this file");
   std::vector<std::string> bugs;
+  bugs.reserve(kSeededBugs);
   for (int i = 0; i < kSeededBugs; ++i) bugs.emplace_back(name_of(static_cast<SeededBug>(i)));
   latency->add_option("--seed-bug", arguments->bug, "put one bug in, and let its guard name it")
       ->check(CLI::IsMember(bugs));
