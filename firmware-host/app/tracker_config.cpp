@@ -83,7 +83,7 @@ void read_tracker(const TomlSection& section, TrackerConfig& tracker) {
 
 Result<NdiSettings> settings_of(const TrackerConfig& tracker) {
   NdiSettings settings{.poll = tracker.poll,
-                       .poll_rate_hz = tracker.rate_hz,
+                       .poll_rate_hz = tracker.rate_hz * kPollsPerFrame,
                        .device_rate_hz = tracker.rate_hz,
                        .baud = tracker.baud,
                        .flow = tracker.flow,
