@@ -207,6 +207,7 @@ TEST(Turning, IsToldByTheNotchToATenthOfADegree) {
     const double notch = 0.6 + turn;
     constexpr std::array<std::pair<double, double>, 3> kTooth{{{185.0, -0.05}, {218.0, 0.0}, {185.0, 0.05}}};
     std::vector<cv::Point> tooth;
+    tooth.reserve(kTooth.size());
     for (const auto& [r, side] : kTooth)
       tooth.push_back(spot(middle + r * Eigen::Vector2d(std::cos(notch + side), std::sin(notch + side))));
     cv::fillConvexPoly(picture, tooth, cv::Scalar::all(150), cv::LINE_AA);
