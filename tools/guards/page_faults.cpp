@@ -12,6 +12,9 @@
 
 #include "tools/guards/system_calls.hpp"
 
+// Where the linker puts what touches the ring.
+extern "C" const char __start_orcart_guard[], __stop_orcart_guard[];  // NOLINT(bugprone-reserved-identifier)
+
 namespace orcart::guards {
 namespace {
 
@@ -69,7 +72,13 @@ void PageFaults::close() noexcept {
   event_ = -1;
 }
 
-bool PageFaults::next_site(const void*& at) noexcept {
+bool PageFaults::is_of_the_guard(const void* at) noexcept {
+  const auto address = reinterpret_cast<std::uintptr_t>(at);
+  return address >= reinterpret_cast<std::uintptr_t>(__start_orcart_guard) &&
+         address < reinterpret_cast<std::uintptr_t>(__stop_orcart_guard);
+}
+
+__attribute__((section("orcart_guard"))) bool PageFaults::next_site(const void*& at) noexcept {
   if (ring_ == nullptr) return false;
   auto* const page = static_cast<perf_event_mmap_page*>(ring_);
   const auto* const data = static_cast<const unsigned char*>(ring_) + kPage;
