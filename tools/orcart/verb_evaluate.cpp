@@ -1,10 +1,8 @@
 // orcart evaluate: the paper's Table 1, from one command.
 #include <unistd.h>
 
-#include <array>
 #include <cstdio>
 #include <memory>
-#include <utility>
 
 #include "tools/evaluate/evaluate_command.hpp"
 #include "tools/evaluate/share_folder.hpp"
@@ -52,27 +50,6 @@ Result<void> take_noise(Arguments& arguments) {
   return {};
 }
 
-/// What was not told is the demo's.
-Result<void> take_demo_files(EvaluateCommand& command) {
-  const std::filesystem::path share = share_folder(this_program());
-  const std::array<std::pair<std::filesystem::path*, const char*>, 5> files{
-      {{&command.surface, "surfaces/ventricle.ply"},
-       {&command.scope, "scopes/neuro-2p7.toml"},
-       {&command.registration, "carts/demo-registration.toml"},
-       {&command.scope_rom, "tools/scope.rom"},
-       {&command.reference_rom, "tools/reference.rom"}}};
-  for (const auto& [file, name] : files) {
-    if (!file->empty()) continue;
-    if (share.empty())
-      return fail(
-          std::string("the demo's ") + name +
-          " is not installed beside this program; --surface, --scope, --registration, --scope-rom and "
-          "--reference-rom are accepted");
-    *file = share / name;
-  }
-  return {};
-}
-
 int run(Arguments& arguments) {
   const bool terminal = ::isatty(STDERR_FILENO) == 1;
   const auto bar = [&](const std::string& what, double done) {
@@ -84,7 +61,8 @@ int run(Arguments& arguments) {
   };
   arguments.command.seen_from = arguments.seen_from == "outside" ? SeenFrom::outside : SeenFrom::inside;
   auto taken = take_noise(arguments);
-  if (taken) taken = take_demo_files(arguments.command);
+  EvaluateCommand& c = arguments.command;
+  if (taken) taken = take_demo_files({c.surface, c.scope, c.registration, c.scope_rom, c.reference_rom});
   const auto report = taken ? evaluate(arguments.command, bar) : tl::unexpected(taken.error());
   if (terminal) std::fputs("\r\033[K", stderr);
   if (!report) {

@@ -1,10 +1,8 @@
 // orcart evaluate map: the error to be expected at each painted texel, as colours.
 #include <unistd.h>
 
-#include <array>
 #include <cstdio>
 #include <memory>
-#include <utility>
 
 #include "tools/evaluate/share_folder.hpp"
 #include "tools/evaluate/texels/error_map.hpp"
@@ -31,28 +29,17 @@ struct Arguments {
   bool json = false;
 };
 
-void take_demo_files(ErrorMapCommand& command) {
-  const std::filesystem::path share = share_folder(this_program());
-  const std::array<std::pair<std::filesystem::path*, const char*>, 5> files{
-      {{&command.surface, "surfaces/ventricle.ply"},
-       {&command.scope, "scopes/neuro-2p7.toml"},
-       {&command.registration, "carts/demo-registration.toml"},
-       {&command.scope_rom, "tools/scope.rom"},
-       {&command.reference_rom, "tools/reference.rom"}}};
-  for (const auto& [file, name] : files)
-    if (file->empty()) *file = share / name;
-}
-
 int run(Arguments& arguments) {
   ErrorMapCommand& command = arguments.command;
   const bool terminal = ::isatty(STDERR_FILENO) == 1;
   const auto bar = [&](const std::string& what, double done) {
     if (terminal) std::fprintf(stderr, "\r\033[K%s %3.0f %%", what.c_str(), 100 * done);
   };
-  take_demo_files(command);
   command.out = arguments.out;
   command.seen_from = arguments.seen_from == "outside" ? SeenFrom::outside : SeenFrom::inside;
-  const auto report = make_error_map(command, bar);
+  const auto taken = take_demo_files(
+      {command.surface, command.scope, command.registration, command.scope_rom, command.reference_rom});
+  const auto report = taken ? make_error_map(command, bar) : tl::unexpected(taken.error());
   if (terminal) std::fputs("\r\033[K", stderr);
   if (!report) {
     std::fprintf(stderr, "orcart evaluate map: %s\n", report.error().message.c_str());

@@ -25,5 +25,13 @@ TEST(ShareFolder, OfThisProgramIsKnown) {
   EXPECT_TRUE(std::filesystem::exists(this_program()));
 }
 
+TEST(DemoFiles, TakeThePlaceOfWhatWasNotTold) {
+  std::filesystem::path surface = "mine.ply", scope, registration, scope_rom, reference_rom;
+  ASSERT_TRUE(take_demo_files({surface, scope, registration, scope_rom, reference_rom}));
+  EXPECT_EQ(surface, "mine.ply");
+  for (const auto* file : {&scope, &registration, &scope_rom, &reference_rom})
+    EXPECT_TRUE(std::filesystem::is_regular_file(*file)) << *file;
+}
+
 }  // namespace
 }  // namespace orcart
