@@ -86,8 +86,10 @@ std::vector<PedalEdge> SimulatedWorld::pedal_edges() const {
   const auto is_at = [&](double share, std::size_t place) { return share >= 0 && place == place_at(share); };
   for (std::size_t i = 0; i < motion_.way().places.size(); ++i) {
     const Instant at = start_ + motion_.arrival(i) + kPressAfterArrival;
-    add_press(edges, at, is_at(script_.stream_at, i) ? kHold : kPressLength);
-    if (is_at(script_.undo_at, i)) add_press(edges, at + kDoublePress, kPressLength);
+    const bool is_held = is_at(script_.stream_at, i);
+    add_press(edges, at, is_held ? kHold : kPressLength);
+    // In a short procedure both would fall upon one place, the second press into the hold.
+    if (!is_held && is_at(script_.undo_at, i)) add_press(edges, at + kDoublePress, kPressLength);
   }
   return edges;
 }

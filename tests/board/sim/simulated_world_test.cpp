@@ -154,6 +154,17 @@ TEST(SimulatedWorld, PressesAtRestAndUndoesOnceAndStreamsOnce) {
   EXPECT_LT(edges.back().at, ventricle().world.end());
 }
 
+TEST(SimulatedWorld, NeverPressesAPedalThatIsHeldHoweverShortTheProcedure) {
+  for (const double duration_s : {2.0, 4.0, 6.0, 8.0, 12.0}) {
+    const Room room(kLumen, {.duration_s = duration_s});
+    const auto edges = room.world.pedal_edges();
+    for (std::size_t i = 1; i < edges.size(); ++i) {
+      EXPECT_LT(edges[i - 1].at, edges[i].at) << duration_s;
+      EXPECT_NE(edges[i - 1].kind, edges[i].kind) << duration_s;
+    }
+  }
+}
+
 TEST(SimulatedWorld, RepeatsItselfFromASeedAndDiffersWithAnother) {
   const Room again(kLumen, {}), other(kLumen, {.seed = 2});
   const Instant at = at_ms(9'999);
