@@ -125,6 +125,19 @@ std::size_t end_of_message(std::string_view text, const Heading& heading) {
   return follows ? end : next->begin;
 }
 
+/// The message up to the next record, where it does not end after its stated length, but would were each CR
+/// LF a line feed: what a text mode has made of a binary recording.
+std::optional<std::string> with_line_feeds_back(std::string_view text, const Heading& heading) {
+  const auto next = next_heading(text, heading.end);
+  const std::size_t behind =
+      text.find_first_not_of("\r\n ", std::min(text.size(), heading.end + heading.length));
+  if (behind == std::string_view::npos || (next && behind == next->begin)) return std::nullopt;
+  std::string message(text.substr(heading.end, next ? next->begin - heading.end : std::string::npos));
+  for (std::size_t at = message.find("\r\n"); at != std::string::npos; at = message.find("\r\n", at + 1))
+    message.erase(at, 1);
+  return message.size() == heading.length ? std::optional{std::move(message)} : std::nullopt;
+}
+
 Dialogue parse_raw(std::string_view text) {
   Dialogue records;
   for (auto heading = next_heading(text, 0); heading;) {
@@ -132,6 +145,7 @@ Dialogue parse_raw(std::string_view text) {
     DialogueRecord record{heading->speaker, heading->number,
                           std::string(text.substr(heading->end, end - heading->end))};
     record.cut_off = end == text.size() && record.bytes.size() < heading->length;
+    if (auto message = with_line_feeds_back(text, *heading)) record.bytes = std::move(*message);
     restore_carriage_return(record.bytes);
     records.push_back(std::move(record));
     heading = next_heading(text, end);

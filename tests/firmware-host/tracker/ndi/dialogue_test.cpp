@@ -43,6 +43,25 @@ TEST(Dialogue, DoesNotBelieveALengthThatLineEndsHaveMadeWrong) {
   EXPECT_EQ((*dialogue)[2].bytes.substr(0, 9), "INIT:E3A5");
 }
 
+TEST(Dialogue, TakesATextModesCarriageReturnsOutOfABinaryRecording) {
+  const auto with_carriage_returns = [](std::string_view text) {
+    std::string longer;
+    for (const char letter : text) longer += letter == '\n' ? "\r\n" : std::string(1, letter);
+    return longer;
+  };
+  const std::string version = testing::framed("Polaris\nS/N: P4\n001.026");
+  const std::string pose = testing::framed_binary("\x01\x02\x0A\x03\x0D\x0A\x0A");
+  const std::string recording = "1. receive[" + std::to_string(version.size()) + "] " + version +
+                                "2. receive[" + std::to_string(pose.size()) + "] " + pose +
+                                "3. command[10] INIT:E3A5\r";
+  const auto dialogue = parse_dialogue(with_carriage_returns(recording), "bin");
+  ASSERT_TRUE(dialogue);
+  ASSERT_EQ(dialogue->size(), 3u);
+  EXPECT_EQ((*dialogue)[0].bytes, version);
+  EXPECT_EQ((*dialogue)[1].bytes, pose);
+  EXPECT_EQ((*dialogue)[2].bytes, "INIT:E3A5\r");
+}
+
 TEST(Dialogue, CountsNoCrcOfAMessageThatTheRecordingCutsOff) {
   for (const std::string_view end : {"1. receive[9] OKAY", "1. receive[9] OKAYA8"}) {
     const auto dialogue = parse_dialogue("1. command[10] INIT:E3A5\\x0D\n" + std::string(end), "log");
