@@ -86,11 +86,13 @@ Result<void> Cart::State::build_painting() {
   if (!made_mapper) return tl::unexpected(made_mapper.error());
   mapper = std::make_unique<Mapper>(std::move(*made_mapper));
   for (std::size_t i = 0; i < kPatchSlots; ++i) patches.emplace_back(patch_capacity({}));
+  const bool imports = context.render_class() == RenderClass::gpu && context.can_import_dma_buf();
   auto made_painter = Painter::create(patient.surface, patient.layout, patient.scope,
                                       {.seen_from = config.seen_from,
                                        .policy = config.policy,
                                        .highlights = config.highlights,
-                                       .light = config.light});
+                                       .light = config.light,
+                                       .picture_copy = imports ? PictureCopy::gpu : PictureCopy::cpu});
   if (!made_painter) return tl::unexpected(made_painter.error());
   painter = std::make_unique<Painter>(std::move(*made_painter));
   auto made_screen = Screen::create(patient.surface, patient.layout, patient.scope,

@@ -194,6 +194,7 @@ RunReport figures_of(Cart& cart, const RunFacts& facts) {
   r.machine = machine_name();
   r.renderer = cart.context().renderer_name();
   r.render_class = cart.render_class() == RenderClass::software ? "software" : "gpu";
+  r.pictures_by_gpu = cart.painter().picture_copy() == PictureCopy::gpu;
   r.simulated = config.simulated();
   r.duration_s = seconds(facts.ended - facts.started);
   r.panel_hz = config.panel.refresh_hz;

@@ -231,7 +231,8 @@ std::string json_of(const RunReport& r) {
   std::string out = "{\n  \"title\":" + json_string(r.title) + ",\n  \"cart\":" + json_string(r.cart) +
                     ",\n  \"when\":" + json_string(r.when) + ",\n  \"machine\":" + json_string(r.machine) +
                     ",\n  \"renderer\":" + json_string(r.renderer) +
-                    ",\n  \"render_class\":" + json_string(r.render_class);
+                    ",\n  \"render_class\":" + json_string(r.render_class) +
+                    ",\"pictures_copied_by\":" + (r.pictures_by_gpu ? "\"gpu\"" : "\"cpu\"");
   out += text(
       ",\n  "
       "\"simulated\":%s,\"duration_s\":%.3f,\"panel_hz\":%g,\"camera_hz\":%g,\"tracker_hz\":%g,\"triangles\":"

@@ -62,6 +62,7 @@ struct CoveragePoint {
 
 struct RunReport {
   std::string title, cart, when, machine, renderer, render_class;
+  bool pictures_by_gpu = false;  ///< the GPU took the camera's pictures from its dma-bufs, to the end
   bool simulated = false;
   double duration_s = 0;
   double panel_hz = 0, camera_hz = 0, tracker_hz = 0;

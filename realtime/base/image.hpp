@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 
@@ -25,10 +26,18 @@ enum class PixelFormat : std::uint32_t {
   gray8 = fourcc('G', 'R', 'E', 'Y'),     ///< one byte a pixel
 };
 
+/// Never the same twice in a process, unlike a descriptor's number, which the next buffer may get. Any
+/// thread.
+inline std::uint64_t new_dma_buf_id() noexcept {
+  static std::atomic<std::uint64_t> last{0};
+  return last.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
 /// One plane: memory of this process, or a dma-buf. Row r starts at data + offset_bytes + r * stride_bytes.
 struct ImagePlane {
-  std::byte* data = nullptr;  ///< null where the plane lives only in a dma-buf
-  int dma_buf_fd = -1;        ///< borrowed; -1 where there is none
+  std::byte* data = nullptr;     ///< null where the plane lives only in a dma-buf
+  int dma_buf_fd = -1;           ///< borrowed; -1 where there is none
+  std::uint64_t dma_buf_id = 0;  ///< new_dma_buf_id() of the buffer, by which an importer knows it again
   std::uint32_t offset_bytes = 0;
   std::uint32_t stride_bytes = 0;
 };

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "realtime/geometry/triangle_mesh.hpp"
+#include "render/gles/picture_copy.hpp"
 
 namespace orcart {
 
@@ -35,6 +36,7 @@ struct PainterSettings {
   PaintPolicy policy = PaintPolicy::newest;
   Highlights highlights = Highlights::keep;
   LightModel light = LightModel::as_seen;
+  PictureCopy picture_copy = PictureCopy::cpu;
 };
 
 /// One standard deviation of what a view's pose and calibration leave open. The record's predicted error at

@@ -177,7 +177,7 @@ Result<Painter> Painter::create(const Surface& surface, const AtlasLayout& layou
   auto depth = ScopeDepth::create(surface.mesh, pinhole);
   if (!depth) return tl::unexpected(depth.error());
   state->depth.push_back(std::move(*depth));
-  state->picture.emplace_back(scope.width_px, scope.height_px);
+  state->picture.emplace_back(scope.width_px, scope.height_px, settings.picture_copy);
   if (auto made = state->make_atlas(surface); !made) return tl::unexpected(made.error());
   if (auto made = state->make_programs(); !made) return tl::unexpected(made.error());
   Painter painter(std::move(state));
@@ -202,7 +202,7 @@ void Painter::warm_up() {
   coverage();
   clear();
   s.picture.clear();
-  s.picture.emplace_back(width, height);
+  s.picture.emplace_back(width, height, s.settings.picture_copy);
 }
 
 Painter::Painter(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -397,6 +397,10 @@ std::uint32_t Painter::atlas_texture() const noexcept {
 std::uint32_t Painter::record_texture() const noexcept {
   return state_->records.id();
 }
+PictureCopy Painter::picture_copy() const noexcept {
+  return state_->picture[0].copy();
+}
+
 const gles::PictureTexture& Painter::picture() const noexcept {
   return state_->picture[0];
 }

@@ -78,6 +78,7 @@ class Painter {
   std::uint32_t atlas_texture() const noexcept;          ///< GL name, RGBA8, colour premultiplied by alpha
   std::uint32_t record_texture() const noexcept;         ///< GL name, RGBA16UI, a TexelRecord each
   const gles::PictureTexture& picture() const noexcept;  ///< the newest upload
+  PictureCopy picture_copy() const noexcept;             ///< as it ended up
 
  private:
   void warm_up();

@@ -3,10 +3,18 @@
 #include "render/gles/picture_texture.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace orcart::gles {
 namespace {
-constexpr int kMostLevels = 4;  // below the picture itself
+constexpr int kMostLevels = 4;             // below the picture itself
+constexpr std::size_t kMostImported = 64;  // V4L2 gives 32 buffers at most, of which two planes are read
+
+/// The DRM format in which bytes are channels, in order.
+constexpr std::uint32_t drm_format_of(int channels) {
+  if (channels == 1) return fourcc('R', '8', ' ', ' ');
+  return channels == 2 ? fourcc('G', 'R', '8', '8') : fourcc('A', 'B', '2', '4');
+}
 }  // namespace
 
 PictureTexture::Plane::Plane(GLenum internal_format, GLenum upload_format, int plane_width, int plane_height,
@@ -31,9 +39,54 @@ void PictureTexture::Plane::upload(const ImagePlane& from) noexcept {
                     pyramid.level(level));
 }
 
-PictureTexture::PictureTexture(int width_px, int height_px)
+// There are drivers (kms_swrast for one) that import a foreign buffer and then read nothing there.
+bool PictureTexture::holds(const Plane& plane, const ImagePlane& picture) noexcept {
+  constexpr int kRows = 8;
+  const auto copied = make_framebuffer(plane.texture.id());
+  if (!copied) return false;
+  for (int i = 0; i < kRows; ++i) {
+    const int y = (2 * i + 1) * plane.height / (2 * kRows);
+    glReadPixels(0, y, plane.width, 1, GL_RGBA, GL_UNSIGNED_BYTE, row_.data());
+    const std::byte* expected =
+        picture.data + picture.offset_bytes + static_cast<std::size_t>(y) * picture.stride_bytes;
+    for (int x = 0; x < plane.width; ++x)
+      if (std::memcmp(&row_[static_cast<std::size_t>(4 * x)], expected + x * plane.channels,
+                      static_cast<std::size_t>(plane.channels)) != 0)
+        return false;
+  }
+  return true;
+}
+
+// The coarser levels are means of 2 x 2 there too, give or take a driver's rounding.
+bool PictureTexture::copy_on_gpu(const Plane& plane, const ImagePlane& from,
+                                 std::uint64_t modifier) noexcept {
+  const std::size_t known = buffers_.imported();
+  const GLuint framebuffer = buffers_.over(from, {.drm_format = drm_format_of(plane.channels),
+                                                  .width_px = plane.width,
+                                                  .height_px = plane.height,
+                                                  .modifier = modifier});
+  if (framebuffer == 0) return false;
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+  glBindTexture(GL_TEXTURE_2D, plane.texture.id());
+  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, plane.width, plane.height);
+  if (plane.pyramid.levels() > 0) glGenerateMipmap(GL_TEXTURE_2D);
+  return buffers_.imported() == known || holds(plane, from);
+}
+
+void PictureTexture::upload(Plane& plane, const ImagePlane& from, std::uint64_t modifier) noexcept {
+  if (copy_ == PictureCopy::gpu && from.dma_buf_fd >= 0) {
+    if (copy_on_gpu(plane, from, modifier)) return;
+    copy_ = PictureCopy::cpu;
+  }
+  plane.upload(from);
+}
+
+PictureTexture::PictureTexture(int width_px, int height_px, PictureCopy copy)
     : width_px_(width_px),
       height_px_(height_px),
+      copy_(copy),
+      row_(copy == PictureCopy::gpu ? 4 * static_cast<std::size_t>(width_px) : 0),
+      buffers_(kMostImported),
       rgba_(GL_RGBA8, GL_RGBA, width_px, height_px, 4),
       y_(GL_R8, GL_RED, width_px, height_px, 1),
       y_with_chroma_(GL_RG8, GL_RG, width_px, height_px, 2),
@@ -45,29 +98,30 @@ bool PictureTexture::upload(const ImageDescriptor& image) noexcept {
     return false;
   switch (image.format) {
     case PixelFormat::rgba8888:
-      rgba_.upload(image.planes[0]);
+      upload(rgba_, image.planes[0], image.modifier);
       format_ = 0;
-      return true;
+      break;
     case PixelFormat::nv12:
-      y_.upload(image.planes[0]);
-      cbcr_.upload(image.planes[1]);
+      upload(y_, image.planes[0], image.modifier);
+      upload(cbcr_, image.planes[1], image.modifier);
       format_ = 1;
-      return true;
+      break;
     case PixelFormat::yuyv:
     case PixelFormat::uyvy:
-      y_with_chroma_.upload(image.planes[0]);
-      packed_.upload(image.planes[0]);
+      upload(y_with_chroma_, image.planes[0], image.modifier);
+      upload(packed_, image.planes[0], image.modifier);
       format_ = image.format == PixelFormat::yuyv ? 2 : 3;
-      return true;
+      break;
     case PixelFormat::gray8:
-      y_.upload(image.planes[0]);
+      upload(y_, image.planes[0], image.modifier);
       format_ = 4;
-      return true;
+      break;
     case PixelFormat::xrgb8888:
     case PixelFormat::none:
-      break;
+      return false;
   }
-  return false;
+  if (copy_ == PictureCopy::gpu && image.planes[0].dma_buf_fd >= 0) glFinish();
+  return true;
 }
 
 PictureTexture::Uniforms PictureTexture::uniforms_of(const Program& program) {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "realtime/base/image.hpp"
+#include "render/gles/dma_buf_framebuffers.hpp"
 #include "render/gles/objects.hpp"
+#include "render/gles/picture_copy.hpp"
 #include "render/gles/picture_pyramid.hpp"
 
 namespace orcart::gles {
@@ -11,10 +13,13 @@ namespace orcart::gles {
 /// Fixed size; the format may change from picture to picture. Upload allocates nothing of our own.
 class PictureTexture {
  public:
-  PictureTexture(int width_px, int height_px);
+  PictureTexture(int width_px, int height_px, PictureCopy copy = PictureCopy::cpu);
 
-  /// Pictures of another size or an unknown format are refused (false), and the last one stays.
+  /// Pictures of another size or an unknown format are refused (false), and the last one stays. The picture's
+  /// memory is done with on return: the GPU's own copy is waited for.
   bool upload(const ImageDescriptor& image) noexcept;
+  /// cpu from the first picture on that the GPU could not read.
+  PictureCopy copy() const noexcept { return copy_; }
   bool empty() const noexcept { return format_ < 0; }
 
   /// Binds to texture units `unit` and `unit + 1` and sets the uniforms of shaders/picture.glsl.
@@ -36,7 +41,15 @@ class PictureTexture {
     Texture texture;
   };
 
+  void upload(Plane& plane, const ImagePlane& from, std::uint64_t modifier) noexcept;
+  /// False where the GPU cannot read there; looked at when a buffer is first seen.
+  bool copy_on_gpu(const Plane& plane, const ImagePlane& from, std::uint64_t modifier) noexcept;
+  bool holds(const Plane& plane, const ImagePlane& picture) noexcept;
+
   int width_px_, height_px_;
+  PictureCopy copy_;
+  std::vector<std::uint8_t> row_;  ///< read back
+  DmaBufFramebuffers buffers_;
   int format_ = -1;  ///< as u_picture_format; -1 before the first upload
   Plane rgba_, y_, y_with_chroma_, cbcr_, packed_;
 };

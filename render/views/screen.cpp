@@ -11,8 +11,8 @@
 
 #include <GLES2/gl2ext.h>
 
+#include "render/gles/dma_buf_framebuffers.hpp"
 #include "render/gles/picture_texture.hpp"
-#include "render/gles/shared_target.hpp"
 #include "render/hud/status_panel.hpp"
 #include "render/shaders/shaders.hpp"
 #include "render/views/scope_outline.hpp"
@@ -47,7 +47,7 @@ struct Screen::State {
   std::vector<HudCanvas> canvas;  ///< exactly one
   gles::Texture picture;
   gles::Framebuffer framebuffer;
-  gles::SharedTargets shared;  ///< targets in dma-bufs, drawn into without a copy
+  gles::DmaBufFramebuffers shared{4};  ///< targets in dma-bufs, drawn into without a copy
   gles::Program inset;
   gles::VertexArray no_attributes;
   gles::PictureTexture::Uniforms picture_uniforms{};
@@ -191,8 +191,13 @@ bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageD
 }
 
 GLuint Screen::State::shared_target(const ImageDescriptor& target) noexcept {
-  const bool fits = target.width_px == settings.width_px && target.height_px == settings.height_px;
-  return fits ? shared.framebuffer_of(target) : 0;
+  const bool fits = target.width_px == settings.width_px && target.height_px == settings.height_px &&
+                    target.format == PixelFormat::xrgb8888;
+  return fits ? shared.over(target.planes[0], {.drm_format = static_cast<std::uint32_t>(target.format),
+                                               .width_px = target.width_px,
+                                               .height_px = target.height_px,
+                                               .modifier = target.modifier})
+              : 0;
 }
 
 bool Screen::State::read_into(const ImageDescriptor& target) noexcept {

@@ -67,6 +67,7 @@ struct DrmScanOut::Buffer {
   std::vector<std::byte> upright;  ///< what is drawn into, where the panel is turned
   gbm_bo* on_gpu = nullptr;
   int dma_buf = -1;
+  std::uint64_t dma_buf_id = 0;
 
   ~Buffer() {
     if (framebuffer != 0) drmModeRmFB(card, framebuffer);
@@ -157,6 +158,7 @@ Result<void> DrmScanOut::make_on_gpu(Buffer& buffer) {
     return fail("panel " + card_.path + " gives no buffer to render into and show: " + reason());
   buffer.stride_bytes = gbm_bo_get_stride(buffer.on_gpu);
   buffer.dma_buf = gbm_bo_get_fd(buffer.on_gpu);
+  buffer.dma_buf_id = new_dma_buf_id();
   if (buffer.dma_buf < 0)
     return fail("panel " + card_.path + " exports no dma-buf to render into: " + reason());
   const std::uint32_t handles[4] = {gbm_bo_get_handle(buffer.on_gpu).u32}, strides[4] = {buffer.stride_bytes},
@@ -230,6 +232,7 @@ ImageDescriptor DrmScanOut::buffer(int index) noexcept {
                                        mode_.width_px, mode_.height_px);
   if (b.upright.empty()) image.planes[0].stride_bytes = b.stride_bytes;
   image.planes[0].dma_buf_fd = b.dma_buf;
+  image.planes[0].dma_buf_id = b.dma_buf_id;
   if (b.on_gpu != nullptr) image.modifier = gbm_bo_get_modifier(b.on_gpu);
   return image;
 }

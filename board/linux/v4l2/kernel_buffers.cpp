@@ -59,6 +59,7 @@ void BufferMapping::swap(BufferMapping& other) noexcept {
   std::swap(data_, other.data_);
   std::swap(size_, other.size_);
   std::swap(dma_buf_fd_, other.dma_buf_fd_);
+  std::swap(dma_buf_id_, other.dma_buf_id_);
 }
 
 Result<KernelBuffers, PortFault> request_buffers(const OpenDevice& device, std::uint32_t count,

@@ -8,6 +8,7 @@
 
 #include "board/linux/device_calls.hpp"
 #include "board/ports/port_fault.hpp"
+#include "realtime/base/image.hpp"
 #include "realtime/base/result.hpp"
 
 namespace orcart {
@@ -18,7 +19,7 @@ class BufferMapping {
  public:
   BufferMapping() = default;
   BufferMapping(DeviceCalls& calls, std::byte* data, std::size_t size, int dma_buf_fd) noexcept
-      : calls_(&calls), data_(data), size_(size), dma_buf_fd_(dma_buf_fd) {}
+      : calls_(&calls), data_(data), size_(size), dma_buf_fd_(dma_buf_fd), dma_buf_id_(new_dma_buf_id()) {}
   BufferMapping(BufferMapping&& other) noexcept { swap(other); }
   BufferMapping& operator=(BufferMapping&& other) noexcept {
     BufferMapping old(static_cast<BufferMapping&&>(*this));
@@ -31,6 +32,7 @@ class BufferMapping {
   std::byte* data() const noexcept { return data_; }
   std::size_t size() const noexcept { return size_; }
   int dma_buf_fd() const noexcept { return dma_buf_fd_; }  ///< -1 where the driver exports none
+  std::uint64_t dma_buf_id() const noexcept { return dma_buf_id_; }
 
  private:
   void swap(BufferMapping& other) noexcept;
@@ -39,6 +41,7 @@ class BufferMapping {
   std::byte* data_ = nullptr;
   std::size_t size_ = 0;
   int dma_buf_fd_ = -1;
+  std::uint64_t dma_buf_id_ = 0;
 };
 
 struct KernelBuffers {

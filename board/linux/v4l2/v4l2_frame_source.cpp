@@ -188,6 +188,7 @@ ImageDescriptor V4l2FrameSource::picture_in(const BufferMapping& memory) const n
   for (int p = 0; p < whole.plane_count; ++p) {
     ImagePlane& plane = whole.planes[static_cast<std::size_t>(p)];
     plane.dma_buf_fd = memory.dma_buf_fd();
+    plane.dma_buf_id = memory.dma_buf_id();
     if (agreed_.stride_bytes != 0) plane.stride_bytes = agreed_.stride_bytes;
   }
   if (format_.format == PixelFormat::nv12)

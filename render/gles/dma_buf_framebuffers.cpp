@@ -1,5 +1,5 @@
 // EGL_EXT_image_dma_buf_import, with the modifier where there is one.
-#include "render/gles/shared_target.hpp"
+#include "render/gles/dma_buf_framebuffers.hpp"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -26,14 +26,13 @@ const Calls& calls() noexcept {
   return found;
 }
 
-EGLImageKHR import(const ImageDescriptor& image) noexcept {
-  const ImagePlane& plane = image.planes[0];
+EGLImageKHR import(const ImagePlane& plane, const DmaBufView& view) noexcept {
   EGLint wanted[] = {EGL_WIDTH,
-                     image.width_px,
+                     view.width_px,
                      EGL_HEIGHT,
-                     image.height_px,
+                     view.height_px,
                      EGL_LINUX_DRM_FOURCC_EXT,
-                     static_cast<EGLint>(image.format),
+                     static_cast<EGLint>(view.drm_format),
                      EGL_DMA_BUF_PLANE0_FD_EXT,
                      plane.dma_buf_fd,
                      EGL_DMA_BUF_PLANE0_OFFSET_EXT,
@@ -41,39 +40,49 @@ EGLImageKHR import(const ImageDescriptor& image) noexcept {
                      EGL_DMA_BUF_PLANE0_PITCH_EXT,
                      static_cast<EGLint>(plane.stride_bytes),
                      EGL_DMA_BUF_PLANE0_MODIFIER_LO_EXT,
-                     static_cast<EGLint>(image.modifier & 0xFFFF'FFFFU),
+                     static_cast<EGLint>(view.modifier & 0xFFFF'FFFFU),
                      EGL_DMA_BUF_PLANE0_MODIFIER_HI_EXT,
-                     static_cast<EGLint>(image.modifier >> 32),
+                     static_cast<EGLint>(view.modifier >> 32),
                      EGL_NONE};
   constexpr std::size_t kModifierAt = 12;
-  if (image.modifier == kNoModifier || image.modifier == 0)
-    wanted[kModifierAt] = EGL_NONE;  // linear by stride
+  if (view.modifier == kNoModifier || view.modifier == 0) wanted[kModifierAt] = EGL_NONE;  // linear by stride
   return calls().create(eglGetCurrentDisplay(), EGL_NO_CONTEXT, EGL_LINUX_DMA_BUF_EXT, nullptr, wanted);
 }
 
-}  // namespace
-
-GLuint SharedTargets::framebuffer_of(const ImageDescriptor& image) noexcept {
-  const int dma_buf = image.planes[0].dma_buf_fd;
-  if (dma_buf < 0 || image.format != PixelFormat::xrgb8888 || calls().create == nullptr ||
-      calls().bind == nullptr)
-    return 0;
-  for (const Target& known : targets_)
-    if (known.dma_buf == dma_buf) return known.framebuffer.id();
-  const EGLImageKHR imported = import(image);
-  if (imported == EGL_NO_IMAGE_KHR) return 0;
+/// No texture where this EGL cannot import it.
+Texture texture_over(const ImagePlane& plane, const DmaBufView& view) noexcept {
+  if (calls().create == nullptr || calls().bind == nullptr) return {};
+  const EGLImageKHR imported = import(plane, view);
+  if (imported == EGL_NO_IMAGE_KHR) return {};
   GLuint name = 0;
   glGenTextures(1, &name);
   Texture texture(name);
   glBindTexture(GL_TEXTURE_2D, name);
   calls().bind(GL_TEXTURE_2D, imported);
   calls().destroy(eglGetCurrentDisplay(), imported);  // the texture keeps the memory
-  auto framebuffer = make_framebuffer(name);
+  return texture;
+}
+
+}  // namespace
+
+DmaBufFramebuffers::DmaBufFramebuffers(std::size_t most) : known_(most) {}
+
+GLuint DmaBufFramebuffers::over(const ImagePlane& plane, const DmaBufView& view) noexcept {
+  if (plane.dma_buf_fd < 0 || plane.dma_buf_id == 0) return 0;
+  for (const Known& each : known_)
+    if (each.buffer_id == plane.dma_buf_id && each.offset_bytes == plane.offset_bytes &&
+        each.drm_format == view.drm_format)
+      return each.framebuffer.id();
+  Texture texture = texture_over(plane, view);
+  if (!texture) return 0;
+  auto framebuffer = make_framebuffer(texture.id());
   if (!framebuffer) return 0;
-  Target& place = targets_[next_++ % targets_.size()];
-  place.dma_buf = dma_buf;
-  place.texture = std::move(texture);
-  place.framebuffer = std::move(*framebuffer);
+  Known& place = known_[next_++ % known_.size()];
+  place = {.buffer_id = plane.dma_buf_id,
+           .offset_bytes = plane.offset_bytes,
+           .drm_format = view.drm_format,
+           .texture = std::move(texture),
+           .framebuffer = std::move(*framebuffer)};
   return place.framebuffer.id();
 }
 
