@@ -44,7 +44,8 @@ struct CartConfig {
   CameraConfig camera;
   PedalConfig pedal;
   PanelConfig panel;
-  Nanos tracker_against_video{};  ///< [sync]: added to a frame's mid-exposure before poses are looked up
+  Nanos tracker_against_video{};    ///< [sync]: added to a frame's mid-exposure before poses are looked up
+  double time_deviation_s = 0.002;  ///< standard deviation of it
   std::vector<double> view_from = {0, -1, 0};  ///< from the surface's centre to the eye, M
   std::vector<double> view_up = {0, 0, 1};
   SimulationConfig simulation;

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <optional>
 
+#include "firmware-host/files/covariance_toml.hpp"
+#include "firmware-host/files/lens_rows.hpp"
 #include "firmware-host/files/toml_pose.hpp"
 #include "firmware-host/files/toml_reader.hpp"
 
@@ -50,6 +52,24 @@ void read_mask(const TomlSection& section, const ScopeModel& scope, CircularMask
   mask.soft_edge_px = section.number("soft_edge_px", {.min = 0, .max = 500, .fallback = 6.0});
 }
 
+std::optional<LensCovariance> read_lens_covariance(const TomlSection& section, std::string_view key,
+                                                   LensModel model) {
+  const auto read = covariance_from_toml(section, key, lens_row_counts(model));
+  if (!read) return std::nullopt;
+  const std::vector<int> rows = lens_rows(model, static_cast<int>(read->rows()));
+  LensCovariance whole = LensCovariance::Zero();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t j = 0; j < rows.size(); ++j)
+      whole(rows[i], rows[j]) = (*read)(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+  return whole;
+}
+
+std::optional<TwistCovariance> read_twist_covariance(const TomlSection& section, std::string_view key) {
+  constexpr std::array<int, 1> kSix{6};
+  const auto read = covariance_from_toml(section, key, kSix);
+  return read ? std::optional<TwistCovariance>(*read) : std::nullopt;
+}
+
 void read_rest(TomlReader& reader, ScopeModel& scope) {
   const TomlSection poses = reader.section("poses");
   scope.X_SC = pose_from_toml<S, C>(poses, "X_SC");
@@ -61,7 +81,16 @@ void read_rest(TomlReader& reader, ScopeModel& scope) {
   const TomlSection residuals = reader.section("residuals");
   scope.residual_px = residuals.number("px", {.min = 0, .fallback = 0.0});
   scope.residual_mm = residuals.number("mm", {.min = 0, .fallback = 0.0});
-  if (residuals.has("covariance")) scope.covariance = residuals.numbers("covariance", 0);
+  // Where passports kept the lens's before they had a section for it; poly4's in powers of 500 px.
+  scope.lens_covariance = read_lens_covariance(residuals, "covariance", scope.lens.model);
+  if (scope.lens_covariance && scope.lens.model == LensModel::poly4) {
+    LensStep scale = LensStep::Ones();
+    for (int i = 0; i < 3; ++i) scale[4 + i] = std::pow(500.0, -1 - i);
+    scope.lens_covariance = scale.asDiagonal() * *scope.lens_covariance * scale.asDiagonal();
+  }
+  const TomlSection covariance = reader.section("covariance");
+  if (auto lens = read_lens_covariance(covariance, "lens", scope.lens.model)) scope.lens_covariance = lens;
+  scope.hand_eye_covariance = read_twist_covariance(covariance, "hand_eye");
 }
 
 void read_turning(const TomlSection& section, ScopeModel& scope) {
@@ -174,6 +203,7 @@ Result<RegistrationFile> read_registration(const std::filesystem::path& file,
   registration.surface_hash = top.text("surface_hash");
   registration.fre_mm = top.number("fre_mm", {.min = 0, .max = 1000});
   registration.predicted_tre_mm = top.number("predicted_tre_mm", {.min = 0, .max = 1000});
+  registration.covariance = read_twist_covariance(top, "covariance");
   if (auto finished = finish(reader, notes); !finished) return tl::unexpected(finished.error());
   return registration;
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "firmware-host/files/lens_rows.hpp"
 #include "firmware-host/files/passport_check.hpp"
 #include "firmware-host/files/scope_file.hpp"
 #include "firmware-host/files/whole_file.hpp"
@@ -93,6 +94,32 @@ std::string turning_text(const Turning& turning) {
   return out;
 }
 
+std::string square(std::string_view key, const Eigen::MatrixXd& matrix) {
+  std::string out = std::string(key) + " = [\n";
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    out += " ";
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) out += " " + text_of(matrix(i, j)) + ",";
+    out += "\n";
+  }
+  return out + "]\n";
+}
+
+std::string covariance_text(const ScopeModel& scope) {
+  if (!scope.lens_covariance && !scope.hand_eye_covariance) return {};
+  std::string out = "\n[covariance]\n";
+  if (scope.lens_covariance) {
+    const std::vector<int> rows = lens_rows(scope.lens.model, *scope.lens_covariance);
+    out += "# Of fx fy cx cy, the coefficients" +
+           std::string(scope.lens.model == LensModel::poly4 ? ", the distortion centre" : "") +
+           ", as far as they were free.\n" +
+           square("lens", Eigen::MatrixXd((*scope.lens_covariance)(rows, rows)));
+  }
+  if (scope.hand_eye_covariance)
+    out += "# Of a small motion of C in its own axes: x y z in mm, rotation vector in rad.\n" +
+           square("hand_eye", *scope.hand_eye_covariance);
+  return out;
+}
+
 }  // namespace
 
 Result<void> write_scope(const std::filesystem::path& file, const ScopeModel& scope) {
@@ -114,16 +141,20 @@ Result<void> write_scope(const std::filesystem::path& file, const ScopeModel& sc
   out += "\n[fall_off]\n" + line("reference_mm", scope.fall_off.reference_mm) +
          line("vignetting_cos_power", scope.fall_off.vignetting_cos_power);
   out += "\n[residuals]\n" + line("px", scope.residual_px) + line("mm", scope.residual_mm);
-  if (!scope.covariance.empty()) out += list("covariance", scope.covariance.data(), scope.covariance.size());
-  return write_whole_file(file, out);
+  return write_whole_file(file, out + covariance_text(scope));
 }
 
 Result<void> write_registration(const std::filesystem::path& file, const RegistrationFile& registration) {
-  return write_whole_file(file, "# The patient's reference in mesh space (LPS, mm): row-major 3x4.\n" +
-                                    line("X_MR", registration.X_MR) +
-                                    line("surface_hash", std::string_view(registration.surface_hash)) +
-                                    line("fre_mm", registration.fre_mm) +
-                                    line("predicted_tre_mm", registration.predicted_tre_mm));
+  return write_whole_file(
+      file, "# The patient's reference in mesh space (LPS, mm): row-major 3x4.\n" +
+                line("X_MR", registration.X_MR) +
+                line("surface_hash", std::string_view(registration.surface_hash)) +
+                line("fre_mm", registration.fre_mm) +
+                line("predicted_tre_mm", registration.predicted_tre_mm) +
+                (registration.covariance ? "# Of a twist in the reference: x y z in mm, rotation vector in "
+                                           "rad; row by row.\n" +
+                                               square("covariance", *registration.covariance)
+                                         : std::string()));
 }
 
 }  // namespace orcart

@@ -3,10 +3,10 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "realtime/geometry/pose.hpp"
+#include "realtime/geometry/twist.hpp"
 #include "realtime/optics/lens.hpp"
+#include "realtime/optics/lens_covariance.hpp"
 
 namespace orcart {
 
@@ -58,8 +58,10 @@ struct ScopeModel {
   double residual_mm = 0;           ///< RMS of the hand-eye, mm
   std::optional<double> notch_rad;  ///< of the mask's notch about its centre, from x towards y, square pixels
   std::optional<Turning> turning;   ///< nothing: head and scope are one piece, or are never turned
-  /// Of fx fy cx cy and the free coefficients, square and row by row; empty where it is not known.
-  std::vector<double> covariance;
+  /// What the calibration leaves open; nothing where it is not known. Lens and hand-eye are told apart as if
+  /// they were independent.
+  std::optional<LensCovariance> lens_covariance;
+  std::optional<TwistCovariance> hand_eye_covariance;  ///< of X_SC: a twist in C
 };
 
 }  // namespace orcart

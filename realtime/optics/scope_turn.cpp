@@ -20,6 +20,20 @@ Eigen::Matrix3d about(const Eigen::Vector3d& axis, double turn_rad) {
   return Eigen::AngleAxisd(turn_rad, axis).toRotationMatrix();
 }
 
+/// What the turn makes of small steps in the lens's numbers: centres and Brown's decentring go round.
+Eigen::Matrix<double, kLensNumbers, kLensNumbers> numbers_going_round(const Lens& lens, double turn_rad) {
+  const double aspect = lens.fy_px / lens.fx_px, c = std::cos(turn_rad), s = std::sin(turn_rad);
+  Eigen::Matrix<double, kLensNumbers, kLensNumbers> round;
+  round.setIdentity();
+  Eigen::Matrix2d place, decentring;
+  place << c, -s / aspect, aspect * s, c;
+  decentring << c, s, -s, c;  // of (p1, p2), where (p2, p1) is the vector
+  round.block<2, 2>(2, 2) = place;
+  round.block<2, 2>(9, 9) = place;
+  if (lens.model == LensModel::brown) round.block<2, 2>(6, 6) = decentring;
+  return round;
+}
+
 }  // namespace
 
 TurnedOptics optics_at(const ScopeModel& scope, double turn_rad) noexcept {
@@ -51,6 +65,13 @@ TurnedOptics optics_at(const ScopeModel& scope, double turn_rad) noexcept {
 ScopeModel turned(const ScopeModel& scope, double turn_rad) {
   const TurnedOptics optics = optics_at(scope, turn_rad);
   ScopeModel at = scope;
+  if (scope.turning && scope.lens_covariance) {
+    const Eigen::Matrix<double, kLensNumbers, kLensNumbers> round = numbers_going_round(scope.lens, turn_rad);
+    at.lens_covariance = round * *scope.lens_covariance * round.transpose();
+  }
+  if (scope.turning && scope.hand_eye_covariance)
+    at.hand_eye_covariance = covariance_seen_from(
+        Pose<C, C>{.rotation = about(Eigen::Vector3d::UnitZ(), -turn_rad)}, *scope.hand_eye_covariance);
   at.lens = optics.lens;
   at.mask = optics.mask;
   at.X_SC = optics.X_SC;

@@ -13,6 +13,7 @@
 
 #include "tools/calibration/camera_checks.hpp"
 #include "tools/calibration/fall_off_fit.hpp"
+#include "tools/calibration/hand_eye.hpp"
 #include "tools/registration/json_text.hpp"
 
 namespace orcart {
@@ -101,6 +102,14 @@ void fit_fall_off(const SeenPictures& seen, CameraCalibration& result) {
   result.scope.fall_off.vignetting_cos_power = power.value_or(0);
 }
 
+/// How many corners count as one: what a lens model leaves over is alike in neighbours.
+double alike(const CameraCalibration& result) {
+  std::vector<HandEyeView> views;
+  for (std::size_t v = 0; v < result.views.size(); ++v)
+    views.push_back({.X_TS = {}, .X_CB = result.fit.views[v].X_CB, .board = result.views[v]});
+  return corners_alike(views, result.fit.lens);
+}
+
 void fill_passport(const CameraCommand& command, CameraCalibration& result) {
   ScopeModel& scope = result.scope;
   const BoardView& first = result.views.front();
@@ -115,8 +124,7 @@ void fill_passport(const CameraCommand& command, CameraCalibration& result) {
   scope.expires_on = iso_date(command.valid_days);
   scope.residual_px = result.fit.rms_px;
   scope.notch_rad = result.mask.notch_rad;
-  for (const auto& row : result.fit.covariance)
-    scope.covariance.insert(scope.covariance.end(), row.begin(), row.end());
+  if (result.fit.covariance) scope.lens_covariance = alike(result) * *result.fit.covariance;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "firmware-host/files/lens_rows.hpp"
 #include "tools/registration/json_text.hpp"
 #include "tools/registration/report_page.hpp"
 
@@ -148,7 +149,11 @@ std::string camera_json(const CameraCalibration& c) {
     unused.push_back("{\"image\": " + json::text(view.image.string()) +
                      ", \"why\": " + json::text(view.remark) + "}");
   for (const std::string& hint : c.hints) hints.push_back(json::text(hint));
-  for (const auto& row : c.fit.covariance) rows.push_back(json::numbers(row));
+  if (c.scope.lens_covariance) {
+    const LensCovariance& covariance = *c.scope.lens_covariance;
+    const std::vector<int> free = lens_rows(lens.model, covariance);
+    for (const int i : free) rows.push_back(json::numbers(Eigen::VectorXd(covariance.row(i)(free))));
+  }
   return "{\"model\": " + json::text(word_for(lens.model)) + ", \"rms_px\": " + json::number(c.fit.rms_px) +
          ", \"rms_mm\": " + json::number(c.fit.rms_mm) + ", \"corners\": " + std::to_string(c.fit.corners) +
          ",\n \"fx_px\": " + json::number(lens.fx_px) + ", \"fy_px\": " + json::number(lens.fy_px) +

@@ -115,14 +115,9 @@ class Solver {
     const double free =
         2.0 * static_cast<double>(fit.corners) - kIntrinsics - 6.0 * static_cast<double>(views_.size());
     values *= 2 * state.cost / std::max(1.0, free);
-    std::vector<int> kept;
     for (int i = 0; i < kIntrinsics; ++i)
-      if (std::find(fixed.begin(), fixed.end(), i) == fixed.end()) kept.push_back(i);
-    for (const int i : kept) {
       fit.deviations[static_cast<std::size_t>(i)] = std::sqrt(std::max(0.0, values(i, i)));
-      auto& row = fit.covariance.emplace_back();
-      for (const int j : kept) row.push_back(values(i, j));
-    }
+    fit.covariance = covariance_in_lens_units(task_.model, values);
     return true;
   }
 
@@ -241,6 +236,13 @@ Intrinsics intrinsics_of(const Lens& lens) {
   }
   k[9] = lens.distortion_centre_px.x(), k[10] = lens.distortion_centre_px.y();
   return k;
+}
+
+LensCovariance covariance_in_lens_units(LensModel model, const LensCovariance& of_intrinsics) {
+  LensStep scale = LensStep::Ones();
+  if (model == LensModel::poly4)
+    for (int i = 0; i < 5; ++i) scale[4 + i] = std::pow(kPolynomialScale_px, -1 - i);
+  return scale.asDiagonal() * of_intrinsics * scale.asDiagonal();
 }
 
 Lens lens_of(LensModel model, const Intrinsics& k) {

@@ -3,11 +3,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "realtime/base/result.hpp"
 #include "realtime/geometry/pose.hpp"
-#include "realtime/optics/lens.hpp"
+#include "realtime/optics/lens_covariance.hpp"
 #include "tools/calibration/board_view.hpp"
 #include "tools/calibration/lens_cost.hpp"
 
@@ -31,7 +32,7 @@ struct CameraFit {
   std::array<double, kIntrinsics>
       deviations{};        ///< standard deviations of the intrinsics; 0 where held. See lens_cost.hpp
   bool determined = true;  ///< false where the equations leave something open
-  std::vector<std::vector<double>> covariance;  ///< of fx fy cx cy and the free coefficients, in that order
+  std::optional<LensCovariance> covariance;  ///< scaled by the residuals; nothing where not determined
   std::size_t corners = 0;
 };
 

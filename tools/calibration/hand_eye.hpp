@@ -2,8 +2,10 @@
 // noise.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "realtime/geometry/twist.hpp"
 #include "tools/calibration/camera_solver.hpp"
 #include "tools/calibration/tracker_noise.hpp"
 #include "tools/registration/poses_file.hpp"
@@ -25,6 +27,7 @@ struct HandEyeFit {
   double scatter_mm = 0;  ///< RMS distance of the board's origins, each through its own view, from their mean
   std::vector<double> scatters_mm;  ///< of each view
   double rms_px = 0;
+  double corner_sigma_px = 0;  ///< what a corner was weighed by in the refinement
 };
 
 /// Park and Martin 1994 for the rotation, least squares for the translation; all pairs of views. Refuses
@@ -44,6 +47,20 @@ struct RefineTask {
 /// pose.
 Result<HandEyeFit> refine_hand_eye(const std::vector<HandEyeView>& views, const Lens& lens,
                                    const RefineTask& task);
+
+/// What the views leave open about a refined fit.
+struct HandEyeSpread {
+  TwistCovariance hand_eye;            ///< of X_SC: a twist in C (mm, rad)
+  std::optional<LensCovariance> lens;  ///< where it was refined, in Lens's units
+  double misfit = 0;  ///< sum of the markers' whitened squares over their degrees of freedom: 1 where the
+                      ///< noise is as declared. hand_eye is multiplied by it
+};
+
+/// First order at the fit, scaled by the markers' misfit and, since that is itself known from few views only,
+/// widened as the covariance of Student's t. Nothing where the views leave a number open. With the lens held,
+/// its own error is not in it.
+std::optional<HandEyeSpread> hand_eye_spread(const std::vector<HandEyeView>& views, const HandEyeFit& fit,
+                                             const RefineTask& task);
 
 /// The board's origin seen by each view, through the lens and hand-eye pose of all others, against where they
 /// place it: RMS, mm. `each`, where given, takes the distances.

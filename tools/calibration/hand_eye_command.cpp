@@ -48,10 +48,23 @@ Result<void> refine(const std::vector<HandEyeView>& views, const Lens& lens, con
   auto refined = refine_hand_eye(views, lens, best);
   if (!refined) return tl::unexpected(refined.error());
   result.refined = std::move(*refined);
+  result.spread = hand_eye_spread(views, result.refined, best);
   result.floor_mm = tracker_floor_mm(views, result.refined, noise);
   result.views = views;
   result.task = best;
   return {};
+}
+
+/// What the passport said of another lens, or of another hand-eye, is not true of these.
+void take_spread(HandEyeCalibration& result) {
+  result.scope.hand_eye_covariance.reset();
+  if (result.task.role == LensRole::refined) result.scope.lens_covariance.reset();
+  if (!result.spread) {
+    result.notes.emplace_back("the views leave open how far the hand-eye may be off; more views tell");
+    return;
+  }
+  result.scope.hand_eye_covariance = result.spread->hand_eye;
+  if (result.spread->lens) result.scope.lens_covariance = result.spread->lens;
 }
 
 }  // namespace
@@ -129,6 +142,7 @@ Result<HandEyeCalibration> calibrate_hand_eye(const HandEyeCommand& command, con
         "X_CE is not known yet, so the window counts as the optical centre: run orcart calibrate tip");
   result.scope.lens = result.refined.lens;
   result.scope.X_SC = result.refined.X_SC;
+  take_spread(result);
   result.scope.residual_mm =
       result.leave_one_out_mm > 0 ? result.leave_one_out_mm : result.refined.scatter_mm;
   return result;

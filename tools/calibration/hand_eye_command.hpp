@@ -22,6 +22,7 @@ struct HandEyeCommand {
 struct HandEyeCalibration {
   ScopeModel scope;  ///< the passport given, with X_SC, the refined lens and residual_mm
   HandEyeFit closed_form, refined;
+  std::optional<HandEyeSpread> spread;  ///< nothing where the views leave something open
   double leave_one_out_mm = 0;
   std::vector<double> left_out_mm;  ///< of each view
   double floor_mm = 0;              ///< what the declared tracker noise alone makes of the board's scatter

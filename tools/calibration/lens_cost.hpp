@@ -7,7 +7,7 @@
 #include <ceres/jet.h>
 #include <ceres/rotation.h>
 
-#include "realtime/optics/lens.hpp"
+#include "realtime/optics/lens_covariance.hpp"
 
 namespace orcart {
 
@@ -19,6 +19,9 @@ constexpr double kPolynomialScale_px = 500;
 
 Intrinsics intrinsics_of(const Lens& lens);
 Lens lens_of(LensModel model, const Intrinsics& intrinsics);
+static_assert(kIntrinsics == kLensNumbers);
+/// poly4's scales taken out.
+LensCovariance covariance_in_lens_units(LensModel model, const LensCovariance& of_intrinsics);
 
 inline double value_of(double x) {
   return x;

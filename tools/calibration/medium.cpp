@@ -175,7 +175,10 @@ Result<MediumConversion> to_fluid(const ScopeModel& air, Medium fluid, const Med
   result.added_mm = together(alone.rms_mm, window.rms_mm, turned.rms_mm);
   scope.residual_px = std::hypot(air.residual_px, result.added_px);
   if (air.residual_mm > 0) scope.residual_mm = std::hypot(air.residual_mm, result.added_mm);
-  scope.covariance.clear();
+  // The lens was fitted to another one, not to corners, so its covariance is not known; C moves along.
+  scope.lens_covariance.reset();
+  if (air.hand_eye_covariance)
+    scope.hand_eye_covariance = covariance_seen_from(back, *air.hand_eye_covariance);
   return result;
 }
 

@@ -57,7 +57,9 @@ struct MovementLag {
 struct LagFit {
   double lag_s = 0;
   double half_width_s = 0;  ///< of the 95 % interval
-  double explained = 0;     ///< 1 - misfit / motion, in squares
+  /// Standard deviation of a Gaussian with that interval.
+  double deviation_s() const { return half_width_s / 1.959964; }
+  double explained = 0;  ///< 1 - misfit / motion, in squares
   std::vector<MovementLag> movements;
   std::vector<double> lags_s, misfits;  ///< the curve: RMS over all movements against the lag
 };

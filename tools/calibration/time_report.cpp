@@ -28,8 +28,9 @@ const char* unit_of(const TimeCalibration& c) {
 std::string sync_snippet(const TimeCalibration& c) {
   return json::format(
       "[sync]\n# tracker against video, calibrated on %s from %zu movements: +- %.1f ms (95 %%)\n"
-      "tracker_against_video_ms = %.1f\n",
-      iso_date(0).c_str(), c.fit.movements.size(), kMs * c.fit.half_width_s, kMs * c.tracker_against_video_s);
+      "tracker_against_video_ms = %.1f\ntracker_against_video_deviation_ms = %.2f\n",
+      iso_date(0).c_str(), c.fit.movements.size(), kMs * c.fit.half_width_s, kMs * c.tracker_against_video_s,
+      kMs * c.fit.deviation_s());
 }
 
 std::string time_text(const TimeCalibration& c) {
@@ -62,6 +63,7 @@ std::string time_json(const TimeCalibration& c) {
   for (const std::string& note : c.notes) notes.push_back(json::text(note));
   return "{\"tracker_against_video_ms\": " + json::number(kMs * c.tracker_against_video_s) +
          ", \"half_width_95_ms\": " + json::number(kMs * c.fit.half_width_s) +
+         ", \"deviation_ms\": " + json::number(kMs * c.fit.deviation_s()) +
          ", \"recorded_with_ms\": " + json::number(kMs * c.recorded_with_s) +
          ", \"motion_from\": " + json::text(word_for(c.from)) +
          ", \"explained\": " + json::number(c.fit.explained) + ", \"frames\": " + std::to_string(c.frames) +

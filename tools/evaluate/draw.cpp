@@ -20,6 +20,13 @@ Twist twist_of(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translati
   return twist;
 }
 
+template <int N>
+Eigen::Matrix<double, N, 1> gaussians(RandomStream& random) {
+  Eigen::Matrix<double, N, 1> numbers;
+  for (double& number : numbers) number = random.gaussian();
+  return numbers;
+}
+
 bool has(const ComponentSet& set, Component component) {
   return set[static_cast<std::size_t>(component)];
 }
@@ -28,6 +35,7 @@ bool has(const ComponentSet& set, Component component) {
 
 Twist drawn_body(const std::vector<Eigen::Vector3d>& markers_mm, double marker_rms_mm, RandomStream& random) {
   std::vector<Eigen::Vector3d> seen;
+  seen.reserve(markers_mm.size());
   for (const Eigen::Vector3d& marker : markers_mm)
     seen.push_back(marker + marker_rms_mm / std::numbers::sqrt3 * random.gaussian3());
   const MarkerFit fit = fit_markers(markers_mm, seen);
@@ -53,12 +61,18 @@ DrawnErrors drawn_errors(const EvaluationScene& scene, const ErrorModel& model, 
   DrawnErrors all;
   all.scope = drawn_body(scene.scope_markers_mm, model.marker_rms_mm, random);
   all.reference = drawn_body(scene.reference_markers_mm, model.marker_rms_mm, random);
-  all.registration = drawn_registration(scene, model, fiducials_M_mm, random);
+  all.registration = model.registration_root ? Twist(*model.registration_root * gaussians<6>(random))
+                                             : drawn_registration(scene, model, fiducials_M_mm, random);
   all.hand_eye << model.hand_eye_mm * random.gaussian3(), model.hand_eye_rad * random.gaussian3();
+  if (model.hand_eye_root) all.hand_eye = *model.hand_eye_root * gaussians<6>(random);
   const double cx = random.gaussian(), cy = random.gaussian(), focal = random.gaussian(),
                edge = random.gaussian();
   all.lens << model.lens_centre_px * cx, model.lens_centre_px * cy, model.lens_focal * focal,
       model.lens_edge_px * edge;
+  if (model.lens_root) {
+    all.lens.setZero();
+    all.lens_numbers = *model.lens_root * gaussians<kLensNumbers>(random);
+  }
   all.refraction = model.refraction * random.gaussian();
   all.time_s = model.time_s * random.gaussian();
   DrawnErrors kept;
@@ -68,7 +82,10 @@ DrawnErrors drawn_errors(const EvaluationScene& scene, const ErrorModel& model, 
   }
   if (has(set, Component::registration)) kept.registration = all.registration;
   if (has(set, Component::hand_eye)) kept.hand_eye = all.hand_eye;
-  if (has(set, Component::lens)) kept.lens = all.lens;
+  if (has(set, Component::lens)) {
+    kept.lens = all.lens;
+    kept.lens_numbers = all.lens_numbers;
+  }
   if (has(set, Component::medium)) kept.refraction = all.refraction;
   if (has(set, Component::time)) kept.time_s = all.time_s;
   return kept;

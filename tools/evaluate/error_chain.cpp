@@ -40,7 +40,7 @@ std::optional<Eigen::Vector3d> believed_direction(const EvaluationScene& scene, 
   const double part = out.norm() / scope.mask.radius_px;
   const double stretch = errors.lens[2] + errors.lens[3] / scope.mask.radius_px * part * part;
   const Eigen::Vector2d moved_pixel = pixel + errors.lens.head<2>() + stretch * out;
-  auto direction = direction_of(scope.lens, moved_pixel);
+  auto direction = direction_of(stepped(scope.lens, errors.lens_numbers), moved_pixel);
   if (!direction || errors.refraction == 0) return direction;
   const double sine = direction->head<2>().norm() * (1 + errors.refraction);  // Snell at a flat window
   if (sine >= 1) return std::nullopt;

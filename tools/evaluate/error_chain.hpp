@@ -1,24 +1,11 @@
 // One draw of all errors, and where it makes a picture's light land on the surface.
 #pragma once
 
+#include "realtime/geometry/twist.hpp"
 #include "tools/evaluate/error_model.hpp"
 #include "tools/evaluate/scene.hpp"
 
 namespace orcart {
-
-/// A small rigid motion: translation (mm) and rotation vector (rad), applied on the right of a pose.
-using Twist = Eigen::Matrix<double, 6, 1>;
-
-/// A pose moved by a twist in its own second frame: X exp(twist), the translation not bent by the rotation.
-template <class A, class B>
-Pose<A, B> moved(const Pose<A, B>& X_AB, const Twist& twist) {
-  const Eigen::Vector3d turn = twist.tail<3>();
-  const double angle = turn.norm();
-  const Eigen::Matrix3d rotation =
-      angle < 1e-15 ? Eigen::Matrix3d::Identity() : Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
-  return {.rotation = X_AB.rotation * rotation,
-          .translation_mm = X_AB.rotation * twist.head<3>() + X_AB.translation_mm};
-}
 
 /// Everything that is wrong in one set-up at one capture. Zero: the truth.
 struct DrawnErrors {
@@ -27,6 +14,7 @@ struct DrawnErrors {
   Twist registration = Twist::Zero();              ///< of X_MR, in R
   Twist hand_eye = Twist::Zero();                  ///< of X_SC, in C
   Eigen::Vector4d lens = Eigen::Vector4d::Zero();  ///< centre x, y (px), focal (relative), edge (px)
+  LensStep lens_numbers = LensStep::Zero();        ///< added to the lens's own numbers
   double refraction = 0;                           ///< relative
   double time_s = 0;                               ///< the pose is this much later than the picture
 };

@@ -3,6 +3,9 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
+
+#include <Eigen/Core>
 
 namespace orcart {
 
@@ -32,13 +35,20 @@ struct ErrorModel {
   double hand_eye_rad = 0.0012;  ///< of its turn, each axis
   double lens_centre_px = 0.4;   ///< each axis
   double lens_focal = 0.001;     ///< relative
-  double lens_edge_px = 0.3;     ///< of the distortion, at the edge of the picture
-  double refraction = 0.001;     ///< relative, of the medium's index against the calibration's
-  double time_s = 0.002;         ///< of the calibrated offset and the tracker's latency together
-  double speed_mm_s = 10;        ///< of the tip at a capture, in a direction of chance
-  double turn_rad_s = 0.1;       ///< likewise
-  double picture_px = 0.3;       ///< of a landmark's place in the picture, each axis
-  double texel_mm = 0.15;        ///< edge of a texel of the atlas: the paint's own grain
+  double lens_edge_px = 0.3;  ///< of the distortion, at the edge of the picture; with lens_root: of the lens
+  double refraction = 0.001;  ///< relative, of the medium's index against the calibration's
+  double time_s = 0.002;      ///< of the calibrated offset and the tracker's latency together
+  double speed_mm_s = 10;     ///< of the tip at a capture, in a direction of chance
+  double turn_rad_s = 0.1;    ///< likewise
+  double picture_px = 0.3;    ///< of a landmark's place in the picture, each axis
+  double texel_mm = 0.15;     ///< edge of a texel of the atlas: the paint's own grain
+
+  /// Where passport and registration state what they leave open: columns whose squares sum up to the
+  /// covariance. They take the place of the standard deviations above (see stated_errors.hpp).
+  std::optional<Eigen::Matrix<double, 6, 6>> hand_eye_root;      ///< of a twist in C
+  std::optional<Eigen::Matrix<double, 6, 6>> registration_root;  ///< of a twist in R
+  std::optional<Eigen::Matrix<double, 11, 11>> lens_root;        ///< of the lens's numbers, as LensStep
+  bool time_told = false;                                        ///< time_s is not the assumed one
 };
 
 }  // namespace orcart

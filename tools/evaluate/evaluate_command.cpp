@@ -10,6 +10,7 @@
 #include "firmware-host/files/views_file.hpp"
 #include "tools/evaluate/marker_bodies.hpp"
 #include "tools/evaluate/pair_prediction.hpp"
+#include "tools/evaluate/stated_errors.hpp"
 #include "tools/mesh/mesh_pictures.hpp"
 
 namespace orcart {
@@ -247,7 +248,10 @@ Result<EvaluationReport> evaluate(const EvaluateCommand& command, const Evaluate
                           .seen_from = command.seen_from == SeenFrom::inside ? "inside" : "outside",
                           .seed = command.simulation.seed,
                           .setups = command.simulation.setups};
-  Evaluator evaluator(command, progress, *own,
+  EvaluateCommand stated = command;
+  stated.simulation.model = with_stated(command.simulation.model, own->scope, *registration);
+  report.model = stated.simulation.model;
+  Evaluator evaluator(stated, progress, *own,
                       {.mesh = own->surface.mesh,
                        .rays = own->rays,
                        .scope = own->scope,

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "firmware-host/files/whole_file.hpp"
+#include "tools/evaluate/stated_errors.hpp"
 
 namespace orcart {
 
@@ -190,14 +191,9 @@ std::string run_html(const NoiseRun& run) {
              "missed).</p>\n",
              r.predicted_rms.mean, 100 * r.coverage.share(), r.coverage.points, 100 * r.coverage_all.share(),
              r.jumped, r.lost) +
-         text(
-             "<p>Drawn: fiducials %.2f mm RMS, %d of them; hand-eye %.2f mm and %.4f rad an axis; lens "
-             "centre "
-             "%.2f px, focal length %.2f %%, edge %.2f px; refraction %.2f %%; time %.1f ms at %.0f mm/s; "
-             "picture %.2f px; texel %.2f mm.</p>\n",
-             m.fiducial_rms_mm, m.fiducials, m.hand_eye_mm, m.hand_eye_rad, m.lens_centre_px,
-             100 * m.lens_focal, m.lens_edge_px, 100 * m.refraction, 1000 * m.time_s, m.speed_mm_s,
-             m.picture_px, m.texel_mm);
+         "<p>Drawn: " + sources_text(m) +
+         text(" at %.0f mm/s; picture %.2f px; texel %.2f mm (assumed).</p>\n", m.speed_mm_s, m.picture_px,
+              m.texel_mm);
 }
 
 constexpr const char* kStyle =
@@ -211,7 +207,8 @@ constexpr const char* kStyle =
 
 std::string text_of(const EvaluationReport& report) {
   std::string out = "surface  " + report.surface + " (" + report.surface_hash + "), seen from " +
-                    report.seen_from + "\nscope    " + report.scope + "\n";
+                    report.seen_from + "\nscope    " + report.scope + "\nerrors   " +
+                    sources_text(report.model) + "\n";
   for (const NoiseRun& run : report.runs) out += table_text(run);
   if (!report.pairs.empty()) out += "\nconsistency of overlapping captures, without landmarks\n";
   for (const PairReport& pair : report.pairs) out += "  " + pair_text(pair) + "\n";
@@ -221,11 +218,11 @@ std::string text_of(const EvaluationReport& report) {
 }
 
 std::string json_of(const EvaluationReport& report) {
-  std::string out = "{\"surface\": " + quoted(report.surface) +
-                    ", \"surface_hash\": " + quoted(report.surface_hash) +
-                    ", \"scope\": " + quoted(report.scope) +
-                    text(", \"setups\": %d, \"seed\": %llu,\n \"runs\": [\n", report.setups,
-                         static_cast<unsigned long long>(report.seed));
+  std::string out =
+      "{\"surface\": " + quoted(report.surface) + ", \"errors_from\": " + sources_json(report.model) +
+      ", \"surface_hash\": " + quoted(report.surface_hash) + ", \"scope\": " + quoted(report.scope) +
+      text(", \"setups\": %d, \"seed\": %llu,\n \"runs\": [\n", report.setups,
+           static_cast<unsigned long long>(report.seed));
   for (std::size_t i = 0; i < report.runs.size(); ++i) out += (i == 0 ? "" : ",\n") + json_of(report.runs[i]);
   out += "],\n \"pairs\": [";
   for (std::size_t i = 0; i < report.pairs.size(); ++i) {

@@ -29,6 +29,7 @@ struct PairReport {
 
 struct EvaluationReport {
   std::string surface, surface_hash, scope, seen_from;
+  ErrorModel model;  ///< with what passport and registration state
   std::uint64_t seed = 1;
   int setups = 0;
   std::vector<NoiseRun> runs;

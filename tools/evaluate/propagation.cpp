@@ -6,17 +6,13 @@
 
 #include <Eigen/Cholesky>
 
+#include "realtime/registration/body_covariance.hpp"
+
 namespace orcart {
 
 namespace {
 
 constexpr double kChiSquare95 = 5.991464547107979;
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& p) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
-  return matrix;
-}
 
 class Propagation {
  public:
@@ -54,6 +50,7 @@ class Propagation {
             .registration = -e.registration,
             .hand_eye = -e.hand_eye,
             .lens = -e.lens,
+            .lens_numbers = -e.lens_numbers,
             .refraction = -e.refraction,
             .time_s = -e.time_s};
   }
@@ -69,6 +66,21 @@ class Propagation {
   bool grazed_ = false;
 };
 
+void add_lens(const ErrorModel& model, Propagation& sum) {
+  if (model.lens_root) {
+    for (int i = 0; i < kLensNumbers; ++i)
+      if (!model.lens_root->col(i).isZero(0)) sum.add({.lens_numbers = model.lens_root->col(i)});
+    return;
+  }
+  const Eigen::Vector4d lens(model.lens_centre_px, model.lens_centre_px, model.lens_focal,
+                             model.lens_edge_px);
+  for (int i = 0; i < 4; ++i) {
+    DrawnErrors step;
+    step.lens[i] = lens[i];
+    sum.add(step);
+  }
+}
+
 }  // namespace
 
 bool PredictedError::covers(const Eigen::Vector2d& error_mm) const {
@@ -76,27 +88,22 @@ bool PredictedError::covers(const Eigen::Vector2d& error_mm) const {
 }
 
 Eigen::Matrix<double, 6, 6> body_spread(const std::vector<Eigen::Vector3d>& points_mm, double sigma_mm) {
-  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
-  for (const Eigen::Vector3d& point : points_mm) {
-    Eigen::Matrix<double, 3, 6> A;
-    A << Eigen::Matrix3d::Identity(), -cross_matrix(point);
-    information += A.transpose() * A;
-  }
-  const Eigen::Matrix<double, 6, 6> covariance =
-      sigma_mm * sigma_mm * information.ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity());
-  return covariance.llt().matrixL();
+  return body_covariance(points_mm, sigma_mm).llt().matrixL();
 }
 
 ErrorSpread spread_of(const EvaluationScene& scene, const ErrorModel& model,
                       const std::vector<Eigen::Vector3d>& fiducials_M_mm) {
   std::vector<Eigen::Vector3d> fiducials_R_mm;
+  fiducials_R_mm.reserve(fiducials_M_mm.size());
   const Pose<R, M> X_RM = scene.X_MR.inverse();
   for (const Eigen::Vector3d& fiducial : fiducials_M_mm)
     fiducials_R_mm.push_back((X_RM * Point<M>{fiducial}).mm);
   const double marker_mm = model.marker_rms_mm / std::numbers::sqrt3;
   return {.scope = body_spread(scene.scope_markers_mm, marker_mm),
           .reference = body_spread(scene.reference_markers_mm, marker_mm),
-          .registration = body_spread(fiducials_R_mm, model.fiducial_rms_mm / std::numbers::sqrt3)};
+          .registration = model.registration_root
+                              ? *model.registration_root
+                              : body_spread(fiducials_R_mm, model.fiducial_rms_mm / std::numbers::sqrt3)};
 }
 
 std::optional<PredictedError> predict(const EvaluationScene& scene, const ErrorModel& model,
@@ -113,15 +120,10 @@ std::optional<PredictedError> predict(const EvaluationScene& scene, const ErrorM
     Eigen::Matrix<double, 6, 6> root = Eigen::Matrix<double, 6, 6>::Zero();
     root.diagonal() << Eigen::Vector3d::Constant(model.hand_eye_mm),
         Eigen::Vector3d::Constant(model.hand_eye_rad);
+    if (model.hand_eye_root) root = *model.hand_eye_root;
     sum.add_twists(root, &DrawnErrors::hand_eye);
   }
-  const Eigen::Vector4d lens(model.lens_centre_px, model.lens_centre_px, model.lens_focal,
-                             model.lens_edge_px);
-  for (int i = 0; i < 4 && has(Component::lens); ++i) {
-    DrawnErrors step;
-    step.lens[i] = lens[i];
-    sum.add(step);
-  }
+  if (has(Component::lens)) add_lens(model, sum);
   if (has(Component::medium)) sum.add({.refraction = model.refraction});
   if (has(Component::time)) sum.add({.time_s = model.time_s});
   if (!has(Component::mapping)) return sum.result(0);

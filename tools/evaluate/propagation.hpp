@@ -20,8 +20,7 @@ struct ErrorSpread {
   Eigen::Matrix<double, 6, 6> scope, reference, registration;  ///< columns: square roots of covariances
 };
 
-/// The covariance of a body fitted to points with isotropic noise of `sigma_mm` an axis (least squares):
-/// sigma^2 (sum A'A)^-1, A = [I, -[p]x]. Its lower triangular root.
+/// The lower triangular root of body_covariance().
 Eigen::Matrix<double, 6, 6> body_spread(const std::vector<Eigen::Vector3d>& points_mm, double sigma_mm);
 
 ErrorSpread spread_of(const EvaluationScene& scene, const ErrorModel& model,

@@ -44,6 +44,15 @@ MappingError mapping_error(const std::vector<double>& left_out_mm) {
   return error;
 }
 
+/// Row by row, a twist in C; null where it is not known.
+std::string covariance_json(const HandEyeCalibration& c) {
+  if (!c.spread) return "null";
+  std::vector<std::string> rows;
+  rows.reserve(6);
+  for (int i = 0; i < 6; ++i) rows.push_back(json::numbers(Twist(c.spread->hand_eye.row(i))));
+  return json::list(rows);
+}
+
 std::string answer(const HandEyeCalibration& c, bool as_json) {
   const MappingError mapping = mapping_error(c.left_out_mm);
   const Eigen::Vector3d &closed = c.closed_form.X_SC.translation_mm, &refined = c.refined.X_SC.translation_mm;
@@ -63,6 +72,8 @@ std::string answer(const HandEyeCalibration& c, bool as_json) {
            ",\n \"mapping_error\": {\"mean_mm\": " + json::number(mapping.mean_mm) +
            ", \"sd_mm\": " + json::number(mapping.sd_mm) + ", \"max_mm\": " + json::number(mapping.worst_mm) +
            ", \"n\": " + std::to_string(c.left_out_mm.size()) + "}" +
+           ", \"covariance\": " + covariance_json(c) +
+           ", \"misfit\": " + (c.spread ? json::number(c.spread->misfit) : "null") +
            ", \"rms_px\": " + json::number(c.refined.rms_px) + ",\n \"views\": " + json::list(views) +
            ",\n \"notes\": " + json::list(notes) + "}\n";
   std::string out =
@@ -73,6 +84,15 @@ std::string answer(const HandEyeCalibration& c, bool as_json) {
       "each view out in "
       "turn %.3f mm\n",
       refined.x(), refined.y(), refined.z(), c.refined.scatter_mm, c.refined.rms_px, c.leave_one_out_mm);
+  if (c.spread) {
+    const Eigen::Vector3d mm = c.spread->hand_eye.diagonal().head<3>().cwiseSqrt(),
+                          mrad = 1e3 * c.spread->hand_eye.diagonal().tail<3>().cwiseSqrt();
+    out += json::format(
+        "known to +- %.3f %.3f %.3f mm and %.2f %.2f %.2f mrad in the camera's axes (one standard "
+        "deviation); "
+        "the poses scatter by %.2f of the declared noise\n",
+        mm.x(), mm.y(), mm.z(), mrad.x(), mrad.y(), mrad.z(), std::sqrt(c.spread->misfit));
+  }
   out += json::format("the tracker's declared noise alone would scatter it by %.3f mm\n", c.floor_mm);
   if (!c.left_out_mm.empty())
     out += json::format("as a mapping error of one point: mean %.2f, s.d. %.2f, max %.2f mm, n %zu\n",

@@ -204,6 +204,7 @@ Result<void> run(Arguments& arguments) {
   if (arguments.target.size() == 3) target = {arguments.target[0], arguments.target[1], arguments.target[2]};
   file.X_MR = registration->X_MR;
   file.fre_mm = registration->fre_mm;
+  file.covariance = twist_covariance(*registration);
   file.predicted_tre_mm = predicted_tre_mm(*registration, target);
   if (!arguments.page.empty())
     if (auto written = write_whole_file(

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Eigenvalues>
 
+#include "realtime/registration/body_covariance.hpp"
 #include "realtime/registration/rigid_fit.hpp"
 #include "tools/registration/json_text.hpp"
 #include "tools/registration/point_matching.hpp"
@@ -177,6 +179,21 @@ Result<Registration> register_points(const RegistrationTask& task) {
              (fit->rotation * pairs->moving_mm[i] + fit->translation_mm - pairs->fixed_mm[i]).norm()});
   measure_shape(*pairs, result);
   return result;
+}
+
+TwistCovariance twist_covariance(const Registration& registration) {
+  if (!registration.pose_covariance) {
+    std::vector<Eigen::Vector3d> points_R_mm;
+    points_R_mm.reserve(registration.points.size());
+    for (const RegisteredPoint& point : registration.points) points_R_mm.push_back(point.moving_mm);
+    return body_covariance(points_R_mm, registration.fle_mm / std::numbers::sqrt3);
+  }
+  // From turn and shift about the centroid to a twist in M, then to R.
+  TwistCovariance twist = TwistCovariance::Zero();
+  twist.topLeftCorner<3, 3>() = cross_matrix(registration.centroid_mm);
+  twist.topRightCorner<3, 3>().setIdentity();
+  twist.bottomLeftCorner<3, 3>().setIdentity();
+  return covariance_seen_from(registration.X_MR, twist * *registration.pose_covariance * twist.transpose());
 }
 
 double predicted_tre_mm(const Registration& registration, const Eigen::Vector3d& target_mm) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "realtime/geometry/pose.hpp"
+#include "realtime/geometry/twist.hpp"
 #include "tools/registration/points_file.hpp"
 
 namespace orcart {
@@ -44,6 +44,9 @@ struct Registration {
 
 /// Refuses fewer than three pairs, points on one line, and names that do not pair up.
 Result<Registration> register_points(const RegistrationTask& task);
+
+/// Of X_MR: a twist in R (mm, rad), from the declared fiducial error.
+TwistCovariance twist_covariance(const Registration& registration);
 
 /// Each fiducial's error and the expected error away from them; `more` is HTML put below. `text` is the
 /// answer as the terminal shows it.

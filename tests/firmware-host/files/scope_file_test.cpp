@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 
+#include "firmware-host/files/lens_rows.hpp"
 #include "firmware-host/files/surface_file.hpp"
 #include "tests/firmware-host/files/temporary_folder.hpp"
 
@@ -105,7 +107,14 @@ ScopeModel scope_with(LensModel model) {
   scope.residual_mm = 1.0 / 7;
   scope.expires_on = "2027-11-20";
   scope.notch_rad = -0.21;
-  scope.covariance = {2, 1.0 / 3, 1.0 / 3, 4};
+  LensCovariance lens = LensCovariance::Zero();
+  for (const int i : lens_rows(model, lens_row_counts(model).front()))
+    for (const int j : lens_rows(model, lens_row_counts(model).front()))
+      lens(i, j) = (i == j ? 2 : 1.0 / 3) * std::pow(10.0, -i - j);
+  scope.lens_covariance = lens;
+  TwistCovariance hand_eye = TwistCovariance::Constant(1e-7 / 3);
+  hand_eye.diagonal() << 0.01, 0.02, 0.03, 1e-6, 2e-6, 3e-6;
+  scope.hand_eye_covariance = hand_eye;
   scope.turning = Turning{.view_angle_rad = 0.5,
                           .centre_px = {317.25, 1.0 / 3},
                           .centre_deviation_px = 0.1,
@@ -140,7 +149,9 @@ TEST_P(EachLens, ComesBackAsItWasWritten) {
   EXPECT_EQ(back->residual_mm, scope.residual_mm);
   EXPECT_EQ(back->expires_on, scope.expires_on);
   EXPECT_EQ(back->notch_rad, scope.notch_rad);
-  EXPECT_EQ(back->covariance, scope.covariance);
+  ASSERT_TRUE(back->lens_covariance && back->hand_eye_covariance);
+  EXPECT_EQ(*back->lens_covariance, *scope.lens_covariance);
+  EXPECT_EQ(*back->hand_eye_covariance, *scope.hand_eye_covariance);
   ASSERT_TRUE(back->turning);
   EXPECT_EQ(back->turning->centre_px, scope.turning->centre_px);
   EXPECT_EQ(back->turning->marker, TurnMarker::head);
@@ -150,6 +161,65 @@ TEST_P(EachLens, ComesBackAsItWasWritten) {
 
 INSTANTIATE_TEST_SUITE_P(ScopeFile, EachLens,
                          ::testing::Values(LensModel::brown, LensModel::poly4, LensModel::fisheye));
+
+TEST(ScopeFile, APassportWithoutCovariancesIsAsGoodAsEver) {
+  const auto scope = read_text(kPassport);
+  ASSERT_TRUE(scope);
+  EXPECT_FALSE(scope->lens_covariance || scope->hand_eye_covariance);
+}
+
+TEST(ScopeFile, KeepsFewerRowsWhereFewerCoefficientsWereFree) {
+  const TemporaryFolder folder;
+  ScopeModel scope = *read_text(kPassport);
+  scope.lens_covariance = LensCovariance::Zero();
+  scope.lens_covariance->diagonal().head<6>().setConstant(0.25);
+  ASSERT_TRUE(write_scope(folder / "scope.toml", scope));
+  const auto back = read_scope(folder / "scope.toml");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(*back->lens_covariance, *scope.lens_covariance);
+}
+
+/// Six by six: 1e-2 on the diagonal but for one pair of numbers.
+std::string six_by_six(const char* upper, const char* lower) {
+  std::string text;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      text += i == 1 && j == 4   ? std::string(upper) + ","
+              : i == 4 && j == 1 ? std::string(lower) + ","
+              : i == j           ? "0.01,"
+                                 : "0,";
+  return "[" + text + "]";
+}
+
+TEST(ScopeFile, RefusesACovarianceThatIsNone) {
+  const auto with = [](const std::string& hand_eye) {
+    return error_with("[poses]", "[covariance]\nhand_eye = " + hand_eye + "\n[poses]");
+  };
+  EXPECT_EQ(with(six_by_six("0.001", "0.002")),
+            "scope.toml:19: [covariance] hand_eye is not symmetric; a covariance, row by row, is accepted");
+  EXPECT_EQ(with(six_by_six("0.011", "0.011")),
+            "scope.toml:19: [covariance] hand_eye is not positive semi-definite; a covariance is accepted");
+  EXPECT_EQ(with("[1, 2, 3]"),
+            "scope.toml:19: [covariance] hand_eye holds 3 numbers; 6x6, row by row, is accepted");
+  EXPECT_NE(error_with("[poses]", "[covariance]\nlens = [1, 2, 2]\n[poses]").find("9x9, 8x8, 6x6, 5x5"),
+            std::string::npos);
+  std::string negative = six_by_six("0", "0");
+  EXPECT_NE(with(replaced(negative, "0.01", "-0.01")).find("negative variance"), std::string::npos);
+  EXPECT_NE(with(replaced(six_by_six("0.001", "0.001"), "0,0.01,", "0,0,")).find("positive semi-definite"),
+            std::string::npos);
+  const auto good = read_text(
+      replaced(kPassport, "[poses]", "[covariance]\nhand_eye = " + six_by_six("0.01", "0.01") + "\n[poses]"));
+  EXPECT_TRUE(good) << good.error().message;  // singular, but semi-definite
+}
+
+TEST(ScopeFile, ReadsTheLensesCovarianceWhereOlderPassportsKeepIt) {
+  std::string square;
+  for (int i = 0; i < 25; ++i) square += i % 6 == 0 ? "0.04," : "0,";
+  const auto scope = read_text(kPassport + std::string("[residuals]\ncovariance = [") + square + "]\n");
+  ASSERT_TRUE(scope) << scope.error().message;
+  EXPECT_EQ((*scope->lens_covariance)(4, 4), 0.04);
+  EXPECT_EQ((*scope->lens_covariance)(5, 5), 0);
+}
 
 TEST(ScopeFile, RefusesALensThatFoldsInsideTheMask) {
   const std::string error = error_with("coefficients = [0, 0, 0, 0, 0]", "coefficients = [-1.5, 0, 0, 0, 0]");
@@ -222,6 +292,7 @@ TEST(RegistrationFile, ComesBackAsItWasWritten) {
   registration.X_MR.rotation =
       Eigen::AngleAxisd(1.1, Eigen::Vector3d(3, 2, 1).normalized()).toRotationMatrix();
   registration.X_MR.translation_mm = {-62.1, -118, 96};
+  registration.covariance = TwistCovariance::Identity() / 3;
   ASSERT_TRUE(write_registration(folder / "r.toml", registration));
   const auto back = read_registration(folder / "r.toml");
   ASSERT_TRUE(back) << back.error().message;
@@ -229,6 +300,8 @@ TEST(RegistrationFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(back->X_MR.translation_mm, registration.X_MR.translation_mm);
   EXPECT_EQ(back->surface_hash, registration.surface_hash);
   EXPECT_EQ(back->fre_mm, registration.fre_mm);
+  ASSERT_TRUE(back->covariance);
+  EXPECT_EQ(*back->covariance, *registration.covariance);
 }
 
 TEST(RegistrationFile, IsRefusedWithoutItsSurface) {

@@ -79,6 +79,37 @@ TEST_P(EveryScope, SeesAtATurnWhatWentRound) {
   }
 }
 
+TEST_P(EveryScope, ItsCovariancesGoRoundWithIt) {
+  const auto [model, view_deg, marker] = GetParam();
+  ScopeModel scope = scope_of(model, view_deg, marker);
+  const double turn = 75 * kDegree;
+  Twist twist;
+  twist << 0.02, -0.03, 0.01, 1e-4, -2e-4, 3e-4;
+  LensStep step = LensStep::Zero();
+  step[2] = 0.02, step[3] = -0.03;
+  if (model == LensModel::brown) step[6] = 1e-5, step[7] = -2e-5;
+  if (model == LensModel::poly4) step[9] = 0.01, step[10] = 0.03;
+  // Of one direction only, so that what comes out tells the one that it became.
+  scope.hand_eye_covariance = twist * twist.transpose();
+  scope.lens_covariance = step * step.transpose();
+  ScopeModel wrong = scope;
+  wrong.X_SC = moved(scope.X_SC, twist);
+  wrong.lens = stepped(scope.lens, step);
+  const ScopeModel at = turned(scope, turn), wrong_at = turned(wrong, turn);
+  const Pose<C, C> off = at.X_SC.inverse() * wrong_at.X_SC;
+  const Eigen::AngleAxisd off_turn(off.rotation);
+  Twist became;
+  became << off.translation_mm, off_turn.angle() * off_turn.axis();
+  EXPECT_TRUE(at.hand_eye_covariance->isApprox(became * became.transpose(), 1e-5));
+  LensStep lens_became = LensStep::Zero();
+  lens_became[2] = wrong_at.lens.cx_px - at.lens.cx_px, lens_became[3] = wrong_at.lens.cy_px - at.lens.cy_px;
+  for (int i = 0; i < 5; ++i)
+    lens_became[4 + i] = wrong_at.lens.coefficients[static_cast<std::size_t>(i)] -
+                         at.lens.coefficients[static_cast<std::size_t>(i)];
+  lens_became.tail<2>() = wrong_at.lens.distortion_centre_px - at.lens.distortion_centre_px;
+  EXPECT_TRUE(at.lens_covariance->isApprox(lens_became * lens_became.transpose(), 1e-6));
+}
+
 INSTANTIATE_TEST_SUITE_P(ScopeTurn, EveryScope,
                          ::testing::Combine(::testing::Values(LensModel::brown, LensModel::poly4,
                                                               LensModel::fisheye),

@@ -1,6 +1,7 @@
 // Hand-eye calibration with noise on each marker of scope and reference: how far the tip is off afterwards,
 // against what the tracker's noise alone allows.
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 #include "realtime/registration/rigid_fit.hpp"
 #include "tests/tools/calibration/simulated_board.hpp"
@@ -84,6 +85,90 @@ TEST(HandEyeNoise, ATrackerOf012LeavesTheTipWithin040) {
 TEST(HandEyeNoise, ATrackerOf025StaysWithinATenthOfItsFloor) {
   const TipErrors tip = tip_errors(0.25, 10);
   EXPECT_LE(tip.calibrated_mm, 1.1 * tip.floor_mm);
+}
+
+struct Declared {
+  double true_mm = 0.12, told_mm = 0.12;
+  LensRole role = LensRole::held;
+  int views = 8, rooms = 200;
+};
+
+/// How many of `rooms` calibrations have the truth within what they say is their 95 %, and the mean square of
+/// the focal length's error in its own standard deviations.
+struct Honesty {
+  double covered = 0, focal2 = 0, misfit = 0;
+};
+
+Honesty honesty(const Declared& task) {
+  constexpr double kChiSquare95OfSix = 12.591587243743977;
+  const Lens lens = testing::test_lens(LensModel::brown);
+  std::vector<Pose<C, B>> truth;
+  auto boards =
+      testing::simulated_views(lens, {.views = task.views, .tilt_rad = 0.7, .roll_rad = 1.5}, &truth);
+  for (BoardView& board : boards)
+    std::erase_if(board.corners,
+                  [](const BoardCorner& c) { return (c.lattice.x() + c.lattice.y()) % 3 != 0; });
+  std::mt19937 random(9);
+  std::normal_distribution<double> pixel_noise(0, 0.2);
+  Honesty sum;
+  for (int room = 0; room < task.rooms; ++room) {
+    std::vector<HandEyeView> views;
+    for (std::size_t v = 0; v < boards.size(); ++v) {
+      BoardView board = boards[v];
+      for (BoardCorner& c : board.corners)
+        c.pixel_px += Eigen::Vector2d(pixel_noise(random), pixel_noise(random));
+      const Pose<R, S> X_RS = measured(truth[v], task.true_mm, random);
+      views.push_back({.X_TS = {.rotation = X_RS.rotation, .translation_mm = X_RS.translation_mm},
+                       .X_CB = *board_pose(board, lens),
+                       .board = board});
+    }
+    const RefineTask refine{
+        .noise = {.marker_mm = task.told_mm, .body_radius_mm = 45, .poses_in = PosesIn::reference},
+        .role = task.role};
+    const auto fit = refine_hand_eye(views, lens, refine);
+    const auto spread = fit ? hand_eye_spread(views, *fit, refine) : std::nullopt;
+    if (!spread) return {};
+    const Eigen::AngleAxisd turn(kX_SC.rotation.transpose() * fit->X_SC.rotation);
+    Twist off;
+    off << kX_SC.rotation.transpose() * (fit->X_SC.translation_mm - kX_SC.translation_mm),
+        turn.angle() * turn.axis();
+    sum.covered += off.dot(spread->hand_eye.ldlt().solve(off)) <= kChiSquare95OfSix ? 1.0 / task.rooms : 0;
+    sum.misfit += spread->misfit / task.rooms;
+    if (spread->lens)
+      sum.focal2 += std::pow(fit->lens.fx_px - lens.fx_px, 2) / (*spread->lens)(0, 0) / task.rooms;
+  }
+  return sum;
+}
+
+TEST(HandEyeSpread, HoldsTheTruthAsOftenAsItSaysWhateverNoiseWasDeclared) {
+  for (const double told_mm : {0.06, 0.12, 0.3}) {
+    const Honesty h = honesty({.told_mm = told_mm});
+    ::testing::Test::RecordProperty("covered_told_" + std::to_string(told_mm), std::to_string(h.covered));
+    EXPECT_GE(h.covered, 0.90) << told_mm;
+    EXPECT_LE(h.covered, 0.99) << told_mm;
+    EXPECT_NEAR(std::sqrt(h.misfit) * told_mm / 0.12, 1, 0.35) << told_mm;
+  }
+}
+
+TEST(HandEyeSpread, OfALensThatMovesAlongIsHonestToo) {
+  const Honesty h = honesty({.role = LensRole::refined, .rooms = 100});
+  EXPECT_GE(h.covered, 0.88);
+  EXPECT_LE(h.covered, 1.0);
+  EXPECT_GT(h.focal2, 0.6);
+  EXPECT_LT(h.focal2, 1.6);
+}
+
+TEST(HandEyeSpread, SaysNothingWhereTheViewsLeaveSomethingOpen) {
+  const Lens lens = testing::test_lens(LensModel::brown);
+  std::vector<Pose<C, B>> truth;
+  const auto boards = testing::simulated_views(lens, {.views = 3}, &truth);
+  std::vector<HandEyeView> views;
+  HandEyeFit fit{.lens = lens, .corner_sigma_px = 0.2};
+  for (std::size_t v = 0; v < boards.size(); ++v) {
+    views.push_back({.X_TS = {}, .X_CB = truth[0], .board = boards[0]});  // the scope never moved
+    fit.X_CB.push_back(truth[0]);
+  }
+  EXPECT_FALSE(hand_eye_spread(views, fit, {.role = LensRole::held}));
 }
 
 TEST(TrackerNoise, TheCovarianceOfABodyIsWhatFitsToNoisyMarkersScatterBy) {

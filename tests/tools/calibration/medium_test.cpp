@@ -38,6 +38,19 @@ TEST(Medium, LeavingRefractionOutIsWrongByTwoAndFourAndAHalfMillimetres) {
   }
 }
 
+TEST(Medium, TheHandEyesCovarianceMovesWithTheOpticalCentreAndTheLensesIsForgotten) {
+  ScopeModel air = in_air(LensModel::brown);
+  air.lens_covariance = LensCovariance::Identity();
+  air.hand_eye_covariance = TwistCovariance::Zero();
+  (*air.hand_eye_covariance)(4, 4) = 1e-4;  // a turn about y alone
+  const auto fluid = to_fluid(air, Medium::water, {});
+  ASSERT_TRUE(fluid) << fluid.error().message;
+  EXPECT_FALSE(fluid->scope.lens_covariance);
+  const TwistCovariance& moved = *fluid->scope.hand_eye_covariance;
+  EXPECT_NEAR(std::sqrt(moved(0, 0)), 0.01 * fluid->viewpoint_mm, 1e-12);  // swings C, which lies back
+  EXPECT_NEAR(moved(4, 4), 1e-4, 1e-16);
+}
+
 TEST(Medium, AConvertedPassportSeesWhatThePixelsSeeInFluid) {
   for (const LensModel model : {LensModel::brown, LensModel::poly4, LensModel::fisheye}) {
     const ScopeModel air = in_air(model);

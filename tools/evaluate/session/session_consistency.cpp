@@ -7,6 +7,7 @@
 #include "firmware-host/files/surface_file.hpp"
 #include "tools/evaluate/marker_bodies.hpp"
 #include "tools/evaluate/pair_prediction.hpp"
+#include "tools/evaluate/stated_errors.hpp"
 
 namespace orcart {
 
@@ -45,8 +46,9 @@ std::vector<SessionGap> gaps_of(const RecordedSession& session, const std::vecto
 Result<void> compare_all(RecordedSession& session, const SessionCommand& command,
                          const EvaluationScene& scene, const EvaluateProgress& progress,
                          SessionReport& report) {
+  const ErrorModel& model = report.model;
   RandomStream random(command.seed, 4'000'000);
-  const auto fiducials = fiducials_of_chance(scene, command.model.fiducials, random);
+  const auto fiducials = fiducials_of_chance(scene, model.fiducials, random);
   std::deque<Earlier> earlier;
   const auto& captures = session.captures();
   for (std::size_t i = 0; i < captures.size(); ++i) {
@@ -63,7 +65,7 @@ Result<void> compare_all(RecordedSession& session, const SessionCommand& command
         ++(pair.pair.found.looked_at >= kSeenTogether ? report.unmatched : report.without_overlap);
         continue;
       }
-      pair.pair.predicted_mm = predicted_apart_mm(scene, command.model, fiducials, pair.pair.found,
+      pair.pair.predicted_mm = predicted_apart_mm(scene, model, fiducials, pair.pair.found,
                                                   {.X_MC = before.taken.X_MC}, {.X_MC = now->X_MC});
       report.pairs.push_back(std::move(pair));
     }
@@ -115,7 +117,8 @@ Result<SessionReport> evaluate_session(const SessionCommand& command, const Eval
                               .X_MR = session->registration().X_MR,
                               .scope_markers_mm = *std::move(scope_markers),
                               .reference_markers_mm = *std::move(reference_markers)};
-  SessionReport report{.session = command.session.filename().string(),
+  SessionReport report{.model = with_stated(command.model, session->scope(), session->registration()),
+                       .session = command.session.filename().string(),
                        .surface = command.surface.filename().string(),
                        .captures = session->captures().size(),
                        .undone = session->undone()};

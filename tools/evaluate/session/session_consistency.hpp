@@ -32,6 +32,7 @@ struct SessionGap {
 };
 
 struct SessionReport {
+  ErrorModel model;  ///< with what the session's passport and registration state
   std::string session, surface;
   std::size_t captures = 0, undone = 0;
   std::vector<SessionPair> pairs;   ///< with patches to compare

@@ -3,6 +3,7 @@
 
 #include "firmware-host/files/whole_file.hpp"
 #include "tools/evaluate/session/session_consistency.hpp"
+#include "tools/evaluate/stated_errors.hpp"
 #include "tools/registration/json_text.hpp"
 
 namespace orcart {
@@ -68,6 +69,7 @@ constexpr const char* kStyle =
 
 std::string text_of(const SessionReport& r) {
   std::string out = "consistency of " + r.session + " on " + r.surface + "\n" + head_of(r) + "\n" +
+                    "errors: " + sources_text(r.model) + "\n" +
                     "   time, s  pair                          apart, mm    p95  patches  predicted\n";
   for (const SessionPair& p : r.pairs)
     out += format("%10.1f  %-14s%-14s  %9.2f  %5.2f  %7zu  %9.2f%s\n", p.second_s, p.pair.first.c_str(),
@@ -89,7 +91,8 @@ std::string json_of(const SessionReport& r) {
   for (const SessionGap& g : r.gaps)
     gaps.push_back(format("{\"from_s\": %.3f, \"to_s\": %.3f, \"pairs\": %zu, \"alarms\": %zu}", g.from_s,
                           g.to_s, g.pairs, g.alarms));
-  return "{\"session\": " + json::text(r.session) + ", \"surface\": " + json::text(r.surface) +
+  return "{\"session\": " + json::text(r.session) + ", \"errors_from\": " + sources_json(r.model) +
+         ", \"surface\": " + json::text(r.surface) +
          format(
              ", \"captures\": %zu, \"undone\": %zu, \"without_overlap\": %zu, \"unmatched\": %zu, "
              "\"alarms\": %zu, "
@@ -117,6 +120,7 @@ Result<void> write_page(const std::filesystem::path& dir, const SessionReport& r
         p.pair.alarm() ? " class=\"alarm\"" : "", p.second_s, p.pair.first.c_str(), p.pair.second.c_str(),
         p.pair.found.median_mm, p.pair.found.p95_mm, p.pair.found.patches.size(), p.pair.predicted_mm);
   page += "</table>\n";
+  page += "<p>Predicted from: " + sources_text(r.model) + ".</p>\n";
   for (const std::string& note : r.notes) page += "<p>" + note + "</p>\n";
   std::error_code trouble;
   std::filesystem::create_directories(dir, trouble);

@@ -9,6 +9,7 @@
 #include "firmware-host/offline/offline_painter.hpp"
 #include "firmware-host/offline/texel_values.hpp"
 #include "tools/evaluate/marker_bodies.hpp"
+#include "tools/evaluate/stated_errors.hpp"
 #include "tools/registration/json_text.hpp"
 
 namespace orcart {
@@ -94,14 +95,16 @@ Result<ErrorMapReport> make_error_map(const ErrorMapCommand& command, const Eval
   RandomStream random(command.seed, 5'000'000);
   const auto fiducials = fiducials_of_chance(scene, command.model.fiducials, random);
   progress("predicting", 0);
-  const std::vector<float> rms_mm = predicted_rms_mm(scene, command.model, fiducials, painted);
-  ErrorMapReport report{.out = command.out, .views = views->views.size(), .setups = command.setups};
+  const ErrorModel model = with_stated(command.model, *scope, *registration);
+  const std::vector<float> rms_mm = predicted_rms_mm(scene, model, fiducials, painted);
+  ErrorMapReport report{
+      .model = model, .out = command.out, .views = views->views.size(), .setups = command.setups};
   summarise(painter->layout(), rms_mm, report);
   if (report.texels == 0)
     return fail(command.out.string() + " is not written: none of the " + std::to_string(report.views) +
                 " views painted anything; check the poses and --seen-from");
   progress("checking by draws", 0.5);
-  report.drawn = drawn_coverage(scene, command.model, fiducials, painted, command.setups, random);
+  report.drawn = drawn_coverage(scene, model, fiducials, painted, command.setups, random);
   const TexelValues shown{
       .layout = painter->layout(), .values = rms_mm, .darkest = ErrorMapReport::kDarkest_mm};
   if (auto written = write_map(command.out, shown, *surface, scene, views->views.back().X_MC); !written)
@@ -111,7 +114,8 @@ Result<ErrorMapReport> make_error_map(const ErrorMapCommand& command, const Eval
 }
 
 std::string text_of(const ErrorMapReport& r) {
-  return json::format("%zu views, %zu painted texels of %.2f mm, %.1f %% of the surface\n", r.views, r.texels,
+  return "errors: " + sources_text(r.model) + "\n" +
+         json::format("%zu views, %zu painted texels of %.2f mm, %.1f %% of the surface\n", r.views, r.texels,
                       r.texel_mm, 100 * r.coverage) +
          json::format("predicted error, mm RMS: mean %.3f, p95 %.3f, max %.2f\n", r.rms_mm.mean, r.rms_mm.p95,
                       r.rms_mm.max) +
@@ -126,8 +130,9 @@ std::string text_of(const ErrorMapReport& r) {
 }
 
 std::string json_of(const ErrorMapReport& r) {
-  return json::format(
-             "{\"views\": %zu, \"texels\": %zu, \"texel_mm\": %.4f, \"coverage\": %.4f, "
+  return "{\"errors_from\": " + sources_json(r.model) +
+         json::format(
+             ", \"views\": %zu, \"texels\": %zu, \"texel_mm\": %.4f, \"coverage\": %.4f, "
              "\"predicted_rms\": {\"mean_mm\": %.4f, \"p95_mm\": %.4f, \"max_mm\": %.4f}, ",
              r.views, r.texels, r.texel_mm, r.coverage, r.rms_mm.mean, r.rms_mm.p95, r.rms_mm.max) +
          json::format(

@@ -21,6 +21,7 @@ struct ErrorMapCommand {
 
 struct ErrorMapReport {
   static constexpr double kDarkest_mm = 2;  ///< and beyond: violet; 0 is yellow
+  ErrorModel model;                         ///< with what passport and registration state
   std::filesystem::path out;
   std::size_t views = 0, texels = 0;
   double texel_mm = 0, coverage = 0;  ///< of the surface, 0..1

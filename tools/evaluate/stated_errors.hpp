@@ -1,0 +1,24 @@
+// Which of an evaluation's errors are assumed, and which the passport and the registration state.
+#pragma once
+
+#include <string>
+
+#include "firmware-host/files/scope_file.hpp"
+#include "tools/evaluate/error_model.hpp"
+
+namespace orcart {
+
+/// The model with the covariances that passport and registration carry in place of what is assumed; the
+/// standard deviations of those parts then tell their size.
+ErrorModel with_stated(const ErrorModel& assumed, const ScopeModel& scope,
+                       const RegistrationFile& registration);
+
+/// The time's standard deviation as somebody told it, in place of the assumed one.
+ErrorModel with_time(const ErrorModel& assumed, double deviation_s);
+
+/// One line: each part's size, and in brackets where it comes from.
+std::string sources_text(const ErrorModel& model);
+/// {"hand-eye": "passport", "registration": "assumed", ...}
+std::string sources_json(const ErrorModel& model);
+
+}  // namespace orcart
