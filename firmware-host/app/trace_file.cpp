@@ -113,16 +113,19 @@ void add_captures(Events& events, const Ledger<CaptureRecord>& captures) {
       events.mark(kCaptureTrack, "capture refused", c.edge_at, number("unit", c.unit));
       continue;
     }
+    const auto id = static_cast<std::uint32_t>(i);  // frames of a stream share their unit
     const auto part = [&](const char* name, Instant from, Instant until) {
-      events.stretch(kCaptureTrack, "capture", c.unit, name, from, until);
+      events.stretch(kCaptureTrack, "capture", id, name, from, until);
     };
-    events.stretch(kCaptureTrack, "capture", c.unit, "capture", c.edge_at, c.on_panel_at, [&] {
-      part("edge to mid-exposure", c.edge_at, c.mid_exposure);
-      part("to its pose", c.mid_exposure, c.matched_at);
-      part("cut out", c.matched_at, c.mapped_at);
-      part("painted", c.mapped_at, c.painted_at);
-      part("onto the panel", c.painted_at, c.on_panel_at);
-    });
+    const bool asked_for = i == 0 || captures.at(i - 1).unit != c.unit;  // the others follow in the stream
+    events.stretch(kCaptureTrack, "capture", id, "capture", asked_for ? c.edge_at : c.mid_exposure,
+                   c.on_panel_at, [&] {
+                     if (asked_for) part("edge to mid-exposure", c.edge_at, c.mid_exposure);
+                     part("to its pose", c.mid_exposure, c.matched_at);
+                     part("cut out", c.matched_at, c.mapped_at);
+                     part("painted", c.mapped_at, c.painted_at);
+                     part("onto the panel", c.painted_at, c.on_panel_at);
+                   });
   }
 }
 

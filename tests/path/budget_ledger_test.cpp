@@ -1,5 +1,10 @@
 // A budget missed in a running cart: counted exactly, told on the status line with its stage, and in the
 // trace.
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <sstream>
+
 #include <gtest/gtest.h>
 
 #include "firmware-host/app/trace_file.hpp"
@@ -101,6 +106,59 @@ TEST(Trace, HoldsEveryThreadsStepsAndEachFramesAndCapturesWay) {
         "\"name\":\"to its pose\"", "\"ph\":\"b\"", "\"ph\":\"e\""})
     EXPECT_NE(trace.find(expected), std::string::npos) << expected;
   EXPECT_EQ(JsonCheck::fault_in(trace), "");
+}
+
+struct Edge {
+  char phase = 0;
+  std::string id, name;
+  double at_us = 0;
+};
+
+/// The ends of overlapping lengths, one line each, in the order of their instants: as a viewer reads them.
+std::vector<Edge> edges_of(const std::string& trace) {
+  std::vector<Edge> edges;
+  std::istringstream in(trace);
+  for (std::string line; std::getline(in, line);) {
+    char phase = 0, kind[32] = "", name[64] = "";
+    unsigned id = 0;
+    Edge edge;
+    if (std::sscanf(line.c_str(),
+                    "{\"ph\":\"%c\",\"cat\":\"%31[^\"]\",\"id\":%u,\"pid\":1,\"tid\":%*d,\"name\":\"%63[^\"]"
+                    "\",\"ts\":%lf",
+                    &phase, kind, &id, name, &edge.at_us) != 5)
+      continue;
+    edge.phase = phase;
+    edge.id = kind + std::to_string(id);
+    edge.name = name;
+    edges.push_back(std::move(edge));
+  }
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const Edge& a, const Edge& b) { return a.at_us < b.at_us; });
+  return edges;
+}
+
+// Perfetto counts an end that belongs to another beginning as lost data.
+TEST(Trace, EndsEachLengthThatItBeganAlsoWhereThePedalIsHeld) {
+  auto run = run_with(StageId::panel, 0ms, 0);
+  ASSERT_TRUE(run.rig && run.rig->cart);
+  run.rig->run_to_end();
+  const auto edges = edges_of(trace_of(*run.rig->cart));
+  std::map<std::string, std::vector<std::string>> open;
+  int captures = 0;
+  for (const Edge& edge : edges) {
+    auto& names = open[edge.id];
+    if (edge.phase == 'b') {
+      names.push_back(edge.name);
+      ASSERT_LE(names.size(), 2u) << edge.id << " is the frame's or capture's own";
+      captures += edge.name == "capture" ? 1 : 0;
+      continue;
+    }
+    ASSERT_FALSE(names.empty()) << edge.id << ' ' << edge.name;
+    ASSERT_EQ(names.back(), edge.name) << edge.id;
+    names.pop_back();
+  }
+  for (const auto& [id, names] : open) EXPECT_TRUE(names.empty()) << id;
+  EXPECT_GT(captures, 3) << "a held pedal paints many";
 }
 
 TEST(Trace, SaysWhichFileCannotBeWritten) {
