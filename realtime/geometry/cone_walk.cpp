@@ -11,7 +11,7 @@ HWY_BEFORE_NAMESPACE();
 namespace orcart::HWY_NAMESPACE {
 
 void walk_enter(const ClusterTree::Node* nodes, const ConeNumbers& cone, ConeWalkFrames& walk) {
-  enter_node(nodes, 0, cone, false, walk);
+  enter_node<true>(nodes, 0, cone, false, walk);
 }
 
 bool walk_visit(const ClusterTree::Node* nodes, const ConeNumbers& cone, ConeWalkFrames& walk,

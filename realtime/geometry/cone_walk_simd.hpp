@@ -14,17 +14,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace orcart::HWY_NAMESPACE {
 
-/// Which of a node's eight spheres meet the cone and which lie inside it; notes the depths of their centres.
-/// `all_inside`: the node lies inside as a whole.
-HWY_INLINE void enter_node(const ClusterTree::Node* nodes, std::uint32_t index, const ConeNumbers& cone,
-                           bool all_inside, ConeWalkFrames& walk) {
+/// Which of a node's eight spheres meet the cone, and which lie inside it: a bit a place.
+struct NodeMeets {
+  std::uint32_t hit = 0, inside = 0;
+};
+
+/// `depth_mm`: where the centres' depths are noted, which a walk from near to far asks for; else null.
+HWY_INLINE NodeMeets meets_of(const ClusterTree::Node& node, const ConeNumbers& cone, float* depth_mm) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::CappedTag<float, ClusterTree::kWidth> d;
   const auto& r = cone.R_CM;
-  const ClusterTree::Node& node = nodes[index];
-  ConeWalkFrames::Frame& frame = walk.frame[walk.size++];
-  frame.node = index;
-  frame.hit = frame.inside = 0;
+  NodeMeets meets;
   for (std::size_t i = 0; i < ClusterTree::kWidth; i += hn::Lanes(d)) {
     const auto dx = hn::Sub(hn::LoadU(d, &node.x[i]), hn::Set(d, cone.apex_mm[0]));
     const auto dy = hn::Sub(hn::LoadU(d, &node.y[i]), hn::Set(d, cone.apex_mm[1]));
@@ -35,21 +35,41 @@ HWY_INLINE void enter_node(const ClusterTree::Node* nodes, std::uint32_t index, 
                         hn::MulAdd(hn::Set(d, r[k + 1]), dy, hn::Mul(hn::Set(d, r[k + 2]), dz)));
     };
     const auto x = row(0), y = row(3), z = row(6);
-    const auto rho = hn::Sqrt(hn::MulAdd(x, x, hn::Mul(y, y)));
-    // Distance from the cone's flank: negative inside.
-    const auto side = hn::Sub(hn::Mul(rho, hn::Set(d, cone.cosine)), hn::Mul(z, hn::Set(d, cone.sine)));
-    const auto far = hn::Set(d, cone.far_mm);
-    const auto hit = hn::And(hn::Le(side, radius), hn::And(hn::Le(hn::Sub(z, radius), far),
-                                                           hn::Ge(hn::Add(z, radius), hn::Zero(d))));
-    const auto inside = hn::And(hn::Lt(side, hn::Neg(radius)), hn::Lt(hn::Add(z, radius), far));
+    // rho cos - z sin is the distance from the cone's flank, negative inside; its two terms are compared
+    // squared.
+    const auto across = hn::Mul(hn::MulAdd(x, x, hn::Mul(y, y)), hn::Set(d, cone.cosine * cone.cosine));
+    const auto rise = hn::Mul(z, hn::Set(d, cone.sine));
+    const auto outer = hn::Add(rise, radius), inner = hn::Sub(rise, radius);
+    const auto zero = hn::Zero(d), far = hn::Set(d, cone.far_mm);
+    const auto near_side = hn::Sub(z, radius), far_side = hn::Add(z, radius);
+    const auto hit = hn::And(hn::And(hn::Ge(outer, zero), hn::Le(across, hn::Mul(outer, outer))),
+                             hn::And(hn::Le(near_side, far), hn::Ge(far_side, zero)));
+    const auto inside =
+        hn::And(hn::And(hn::Gt(inner, zero), hn::Lt(across, hn::Mul(inner, inner))), hn::Lt(far_side, far));
     std::uint8_t hit_bits[8] = {}, inside_bits[8] = {};
     hn::StoreMaskBits(d, hit, hit_bits);
     hn::StoreMaskBits(d, inside, inside_bits);
-    frame.hit |= static_cast<std::uint32_t>(hit_bits[0]) << i;
-    frame.inside |= static_cast<std::uint32_t>(inside_bits[0]) << i;
-    hn::StoreU(z, d, &frame.depth_mm[i]);
+    meets.hit |= static_cast<std::uint32_t>(hit_bits[0]) << i;
+    meets.inside |= static_cast<std::uint32_t>(inside_bits[0]) << i;
+    if (depth_mm != nullptr) hn::StoreU(z, d, depth_mm + i);
   }
-  if (all_inside) frame.inside = 0xFF;
+  return meets;
+}
+
+/// `all_inside`: the node lies inside as a whole.
+template <bool kWithDepths>
+HWY_INLINE void enter_node(const ClusterTree::Node* nodes, std::uint32_t index, const ConeNumbers& cone,
+                           bool all_inside, ConeWalkFrames& walk) {
+  ConeWalkFrames::Frame& frame = walk.frame[walk.size++];
+  frame.node = index;
+  const NodeMeets meets = meets_of(nodes[index], cone, kWithDepths ? frame.depth_mm.data() : nullptr);
+  frame.hit = meets.hit;
+  frame.inside = all_inside ? 0xFF : meets.inside;
+}
+
+/// Whether each of its places is one cluster.
+HWY_INLINE bool is_lowest(const ClusterTree::Node& node) {
+  return node.cluster[ClusterTree::kWidth] - node.cluster[0] <= ClusterTree::kWidth;
 }
 
 /// The next run in the tree's order. Bound: a node is entered once, a place looked at once.
@@ -68,7 +88,7 @@ HWY_INLINE bool next_run(const ClusterTree::Node* nodes, const ConeNumbers& cone
     run.end = node.cluster[place + 1];
     run.inside = (frame.inside >> place & 1U) != 0;
     if (run.inside || run.end - run.first == 1) return true;
-    enter_node(nodes, node.child[place], cone, false, walk);
+    enter_node<false>(nodes, node.child[place], cone, false, walk);
   }
   return false;
 }
@@ -94,7 +114,7 @@ HWY_INLINE bool next_visit(const ClusterTree::Node* nodes, const ConeNumbers& co
       visit = {.cluster = node.cluster[place], .inside = inside};
       return true;
     }
-    enter_node(nodes, node.child[place], cone, inside, walk);
+    enter_node<true>(nodes, node.child[place], cone, inside, walk);
   }
   return false;
 }

@@ -46,8 +46,7 @@ bool axis_pierces(const std::array<Eigen::Vector3d, 3>& p, double far_mm) {
 
 ViewingCone viewing_cone(const Pose<M, C>& X_MC, const ConeShape& shape) noexcept {
   ViewingCone cone;
-  cone.apex_mm = X_MC.translation_mm.cast<float>();
-  cone.R_CM = X_MC.rotation.transpose().cast<float>();
+  cone.aim(X_MC);
   cone.tangent = static_cast<float>(std::tan(shape.half_angle_rad));
   cone.sine = static_cast<float>(std::sin(shape.half_angle_rad));
   cone.cosine = static_cast<float>(std::cos(shape.half_angle_rad));

@@ -17,6 +17,11 @@ struct ViewingCone {
         cosine = 0.70710678F;  ///< of the half angle, which is below 90 degrees
   float far_mm = 60;
 
+  /// The same cone elsewhere.
+  void aim(const Pose<M, C>& X_MC) noexcept {
+    apex_mm = X_MC.translation_mm.cast<float>();
+    R_CM = X_MC.rotation.transpose().cast<float>();
+  }
   /// A point of M (mm) in C.
   Eigen::Vector3f to_camera(const Eigen::Vector3f& p_mm) const noexcept { return R_CM * (p_mm - apex_mm); }
 };

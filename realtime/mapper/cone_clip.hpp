@@ -2,11 +2,22 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "realtime/mapper/cone_sieve.hpp"
 
 namespace orcart {
+
+/// Edges of a cluster from a corner in the cone to one outside. Lives with its owner, one cluster after
+/// another.
+struct ConeExits {
+  static constexpr std::size_t kRoom =
+      2 * ClusterTree::kMaxTriangles + 16;                   ///< whole vectors are read and written
+  alignas(64) std::array<std::int32_t, kRoom> from{}, to{};  ///< vertices of the cluster
+  alignas(64) std::array<float, kRoom> fraction{};  ///< of the way, at which the edge leaves the cone
+  std::uint32_t count = 0;
+};
 
 /// A corner of the polygon: on the edge between two corners of the triangle, at `fraction` of the way.
 struct ClipPoint {

@@ -16,7 +16,7 @@ namespace orcart::HWY_NAMESPACE {
 
 /// What a cluster's vertices have in common.
 struct VertexNotes {
-  bool all_inside = false, all_beyond = false;
+  bool all_inside = false, none_inside = false, all_beyond = false;
 };
 
 /// Brings a cluster's vertices to C and notes for each where it lies about the cone.
@@ -28,7 +28,7 @@ HWY_INLINE VertexNotes note_vertices(const ClusterTree::Arrays& tree, std::uint3
   const std::size_t first = tree.first_vertex[cluster], count = tree.first_vertex[cluster + 1] - first;
   const auto& r = cone.R_CM;
   const auto slack = hn::Set(d, 1e-3F), zero = hn::Zero(d), far = hn::Set(d, cone.far_mm);
-  auto in_all = hn::Set(du, ~0U);
+  auto in_all = hn::Set(du, ~0U), in_any = hn::Zero(du);
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const auto dx = hn::Sub(hn::LoadU(d, tree.x + first + i), hn::Set(d, cone.apex_mm[0]));
     const auto dy = hn::Sub(hn::LoadU(d, tree.y + first + i), hn::Set(d, cone.apex_mm[1]));
@@ -75,12 +75,19 @@ HWY_INLINE VertexNotes note_vertices(const ClusterTree::Arrays& tree, std::uint3
     }
     const auto beyond_end = hn::Not(hn::FirstN(du, count - i));
     in_all = hn::And(in_all, hn::Or(notes, hn::IfThenElseZero(beyond_end, hn::Set(du, ~0U))));
+    in_any = hn::Or(in_any, hn::IfThenZeroElse(beyond_end, notes));
   }
-  alignas(64) std::uint32_t lanes[16];
-  hn::Store(in_all, du, lanes);
-  std::uint32_t common = ~0U;
-  for (std::size_t k = 0; k < hn::Lanes(du); ++k) common &= lanes[k];
-  return {.all_inside = (common & kNoteInside) != 0, .all_beyond = (common & ~kNoteInside & 0x7FFU) != 0};
+  alignas(64) std::uint32_t all_lanes[16], any_lanes[16];
+  hn::Store(in_all, du, all_lanes);
+  hn::Store(in_any, du, any_lanes);
+  std::uint32_t all = ~0U, any = 0;
+  for (std::size_t k = 0; k < hn::Lanes(du); ++k) {
+    all &= all_lanes[k];
+    any |= any_lanes[k];
+  }
+  return {.all_inside = (all & kNoteInside) != 0,
+          .none_inside = (any & kNoteInside) == 0,
+          .all_beyond = (all & ~kNoteInside & 0x7FFU) != 0};
 }
 
 /// The triangles of the cluster whose vertices were noted last. `touching`: those that meet the cone with no

@@ -17,19 +17,23 @@ Cutout::Cutout(const ClusterTree& tree, const RayScene& rays, const ScopeModel& 
     : tree_(tree),
       surface_(rays),
       rule_(rule),
-      shape_{.half_angle_rad = scope.cone_half_angle_rad, .far_mm = scope.far_mm},
+      half_angle_rad_(scope.cone_half_angle_rad),
+      cone_(viewing_cone({}, {.half_angle_rad = scope.cone_half_angle_rad, .far_mm = scope.far_mm})),
       directions_(rectified_directions(scope)) {}
 
 void Cutout::begin(const Pose<M, C>& X_MC, CutoutForm form) noexcept {
-  rays_ = trace_five_rays(surface_, X_MC, directions_, shape_.far_mm);
-  paper_ = paper_projection(X_MC, rays_, shape_.half_angle_rad);
+  rays_ = trace_five_rays(surface_, X_MC, directions_, cone_.far_mm);
+  paper_ = paper_projection(X_MC, rays_, half_angle_rad_);
   progress_.run = {};
   progress_.form = form;
   progress_.rule = rule_;
   progress_.s_per_mm = paper_.valid ? 1 / paper_.s_size_mm : 0;
   progress_.t_per_mm = paper_.valid ? 1 / paper_.t_size_mm : 0;
-  progress_.walk = ConeWalk{};  // over before it begins, where there is no centre
-  if (paper_.valid) progress_.walk.begin(tree_, viewing_cone(X_MC, shape_));
+  cone_.aim(X_MC);
+  if (paper_.valid)
+    progress_.walk.begin(tree_, cone_);
+  else
+    progress_.walk = ConeWalk{};  // over before it begins: there is no centre
   first_ = true;
   done_ = false;
 }
@@ -47,7 +51,8 @@ bool Cutout::next(CutoutMesh& mesh) noexcept {
 }
 
 void Cutout::ranges(const Pose<M, C>& X_MC, CutoutRanges& ranges) noexcept {
-  progress_.walk.begin(tree_, viewing_cone(X_MC, shape_));
+  cone_.aim(X_MC);
+  progress_.walk.begin(tree_, cone_);
   collect_ranges(tree_, progress_.walk, ranges);
   done_ = true;
 }

@@ -7,6 +7,7 @@
 #include "realtime/base/result.hpp"
 #include "realtime/geometry/cone_walk.hpp"
 #include "realtime/geometry/ray_scene.hpp"
+#include "realtime/mapper/cone_clip.hpp"
 #include "realtime/mapper/cone_sieve.hpp"
 #include "realtime/mapper/cutout_mesh.hpp"
 #include "realtime/mapper/five_rays.hpp"
@@ -27,6 +28,7 @@ struct CutoutProgress {
   CutoutRule rule = CutoutRule::touching;
   float s_per_mm = 0, t_per_mm = 0;
   SieveScratch scratch;
+  ConeExits exits;
 };
 
 /// Real-time after construction; belongs to one thread. Borrows the tree and the rays, which outlive it. The
@@ -48,7 +50,8 @@ class Cutout {
   const ClusterTree& tree_;
   const RayScene& surface_;
   CutoutRule rule_;
-  ConeShape shape_;
+  double half_angle_rad_;
+  ViewingCone cone_;
   FiveDirections directions_;
   FiveRays rays_;
   PaperProjection paper_;

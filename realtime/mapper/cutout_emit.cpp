@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 
 #include "realtime/geometry/cone_walk_simd.hpp"
+#include "realtime/mapper/cone_exits_simd.hpp"
 #include "realtime/mapper/cone_sieve_simd.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -35,30 +36,67 @@ HWY_INLINE Slot slot_of(CutoutMesh& mesh) {
           .max_triangles = static_cast<std::uint32_t>(mesh.corners.size() - kEmitPadding)};
 }
 
-/// Copies `count` vertices from `first` on and maps them: s across C's x, t against C's y.
+/// The paper's texture coordinates of vertices: s across C's x, t against C's y.
+class TextureMap {
+ public:
+  static constexpr hn::CappedTag<float, 16> d{};
+  using V = hn::Vec<decltype(d)>;
+
+  TextureMap(const ConeNumbers& cone, const CutoutProgress& progress)
+      : cone_(cone), s_per_mm_(progress.s_per_mm), t_per_mm_(progress.t_per_mm) {}
+  HWY_INLINE void store(V x, V y, V z, float* s, float* t) const {
+    const auto& r = cone_.R_CM;
+    const V dx = hn::Sub(x, hn::Set(d, cone_.apex_mm[0])), dy = hn::Sub(y, hn::Set(d, cone_.apex_mm[1])),
+            dz = hn::Sub(z, hn::Set(d, cone_.apex_mm[2])), half = hn::Set(d, 0.5F);
+    const auto along = [&](std::size_t row, float per_mm) HWY_ATTR {
+      return hn::MulAdd(hn::Set(d, r[row] * per_mm), dx,
+                        hn::MulAdd(hn::Set(d, r[row + 1] * per_mm), dy,
+                                   hn::MulAdd(hn::Set(d, r[row + 2] * per_mm), dz, half)));
+    };
+    hn::StoreU(along(0, s_per_mm_), d, s);
+    hn::StoreU(along(3, -t_per_mm_), d, t);
+  }
+
+ private:
+  const ConeNumbers& cone_;
+  float s_per_mm_, t_per_mm_;
+};
+
+/// Copies `count` vertices from `first` on and maps them.
 HWY_INLINE void emit_vertices(const ClusterTree::Arrays& tree, std::size_t first, std::size_t count,
-                              const ConeNumbers& cone, const CutoutProgress& progress, Slot& slot) {
-  const hn::CappedTag<float, 16> d;
-  const auto& r = cone.R_CM;
-  const auto half = hn::Set(d, 0.5F);
-  const auto s0 = hn::Set(d, r[0] * progress.s_per_mm), s1 = hn::Set(d, r[1] * progress.s_per_mm),
-             s2 = hn::Set(d, r[2] * progress.s_per_mm);
-  const auto t0 = hn::Set(d, -r[3] * progress.t_per_mm), t1 = hn::Set(d, -r[4] * progress.t_per_mm),
-             t2 = hn::Set(d, -r[5] * progress.t_per_mm);
-  const auto ax = hn::Set(d, cone.apex_mm[0]), ay = hn::Set(d, cone.apex_mm[1]),
-             az = hn::Set(d, cone.apex_mm[2]);
+                              const TextureMap& map, Slot& slot) {
+  constexpr auto d = TextureMap::d;
   const std::size_t to = slot.vertices;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const auto x = hn::LoadU(d, tree.x + first + i), y = hn::LoadU(d, tree.y + first + i),
                z = hn::LoadU(d, tree.z + first + i);
-    const auto dx = hn::Sub(x, ax), dy = hn::Sub(y, ay), dz = hn::Sub(z, az);
     hn::StoreU(x, d, slot.x + to + i);
     hn::StoreU(y, d, slot.y + to + i);
     hn::StoreU(z, d, slot.z + to + i);
-    hn::StoreU(hn::MulAdd(s0, dx, hn::MulAdd(s1, dy, hn::MulAdd(s2, dz, half))), d, slot.s + to + i);
-    hn::StoreU(hn::MulAdd(t0, dx, hn::MulAdd(t1, dy, hn::MulAdd(t2, dz, half))), d, slot.t + to + i);
+    map.store(x, y, z, slot.s + to + i, slot.t + to + i);
   }
   slot.vertices += static_cast<std::uint32_t>(count);
+}
+
+/// The vertices where edges leave the cone, behind the cluster's own, which begin at `base`.
+HWY_INLINE void emit_exits(const ConeExits& exits, const TextureMap& map, std::uint32_t base, Slot& slot) {
+  constexpr auto d = TextureMap::d;
+  const hn::RebindToSigned<std::remove_const_t<decltype(d)>> di;
+  const std::size_t to = slot.vertices;
+  for (std::size_t i = 0; i < exits.count; i += hn::Lanes(d)) {
+    const auto from = hn::Load(di, exits.from.data() + i), until = hn::Load(di, exits.to.data() + i);
+    const auto fraction = hn::Load(d, exits.fraction.data() + i);
+    const auto between = [&](float* coordinate) HWY_ATTR {
+      const auto inner = hn::GatherIndex(d, coordinate + base, from);
+      const auto outer = hn::GatherIndex(d, coordinate + base, until);
+      const auto at = hn::MulAdd(fraction, hn::Sub(outer, inner), inner);
+      hn::StoreU(at, d, coordinate + to + i);
+      return at;
+    };
+    const auto x = between(slot.x), y = between(slot.y), z = between(slot.z);
+    map.store(x, y, z, slot.s + to + i, slot.t + to + i);
+  }
+  slot.vertices += exits.count;
 }
 
 /// All triangles of a cluster whose vertices begin at `base` in the slot.
@@ -121,32 +159,100 @@ HWY_INLINE void emit_clipped(const std::uint8_t* corners, const ConeNumbers& con
   }
 }
 
+/// Corners of a triangle, in its own order, so that those in the cone come first.
+struct Turned {
+  std::uint8_t first, second, third;
+};
+constexpr Turned kTurned[8] = {{0, 1, 2}, {0, 1, 2}, {1, 2, 0}, {0, 1, 2},
+                               {2, 0, 1}, {2, 0, 1}, {1, 2, 0}, {0, 1, 2}};
+
+/// Whether an edge between two corners outside stays out of the cone: q(t) = a t^2 + 2 b t + c is below zero
+/// at both ends and at its peak. False also where it cannot be told so.
+HWY_INLINE bool stays_outside(const ConeNumbers& cone, const SieveScratch& corner, std::size_t from,
+                              std::size_t to) {
+  const double tangent2 = double{cone.tangent} * cone.tangent;
+  const double x = corner.x[from], y = corner.y[from], z = corner.z[from];
+  const double dx = corner.x[to] - x, dy = corner.y[to] - y, dz = corner.z[to] - z;
+  const double a = tangent2 * dz * dz - dx * dx - dy * dy;
+  const double b = tangent2 * z * dz - x * dx - y * dy;
+  const double c = tangent2 * z * z - x * x - y * y;
+  const bool peaks_between = b > 0 && a + b < 0;
+  return c < 0 && a + 2 * b + c < 0 && (!peaks_between || b * b < a * c);
+}
+
+/// Triangles with one or two corners in the cone: two edges of each leave it, and what is inside is a
+/// triangle or two. Those with one corner whose outer edge may dip into the cone are left to emit_clipped
+/// where `outer_edges` are asked for; returns them, and those with no corner in it.
+HWY_INLINE std::uint64_t emit_cut(const std::uint8_t* corners, const ConeNumbers& cone, std::uint64_t cut,
+                                  bool outer_edges, const TextureMap& map, std::uint32_t base,
+                                  CutoutProgress& progress, Slot& slot) {
+  const SieveScratch& scratch = progress.scratch;
+  ConeExits& exits = progress.exits;
+  exits.count = 0;
+  std::uint64_t left = 0;
+  const std::uint32_t new_vertices = slot.vertices;
+  std::uint32_t* to = slot.corners + std::size_t{3} * slot.triangles;
+  for (; cut != 0; cut &= cut - 1) {
+    const std::uint8_t* corner = corners + 3 * static_cast<std::size_t>(__builtin_ctzll(cut));
+    const std::uint32_t inside = (scratch.notes[corner[0]] & kNoteInside) |
+                                 (scratch.notes[corner[1]] & kNoteInside) << 1 |
+                                 (scratch.notes[corner[2]] & kNoteInside) << 2;
+    const bool two = (inside & (inside - 1)) != 0;
+    const Turned& turned = kTurned[inside];
+    const std::uint32_t a = corner[turned.first], b = corner[turned.second], c = corner[turned.third];
+    if (inside == 0 || (outer_edges && !two && !stays_outside(cone, scratch, b, c))) {
+      left |= cut & -cut;
+      continue;
+    }
+    const std::uint32_t leaving = new_vertices + exits.count, coming = leaving + 1;
+    exits.from[exits.count] = static_cast<std::int32_t>(two ? b : a);
+    exits.to[exits.count++] = static_cast<std::int32_t>(two ? c : b);
+    exits.from[exits.count] = static_cast<std::int32_t>(a);
+    exits.to[exits.count++] = static_cast<std::int32_t>(c);
+    to[0] = base + a;
+    to[1] = leaving;
+    to[2] = coming;
+    to[3] = base + a;  // kept only where two corners are in
+    to[4] = base + b;
+    to[5] = leaving;
+    to += two ? 6 : 3;
+  }
+  if (exits.count == 0) return left;
+  slot.triangles = static_cast<std::uint32_t>((to - slot.corners) / 3);
+  for (std::size_t i = exits.count; i < exits.count + 16; ++i) exits.from[i] = exits.to[i] = 0;
+  find_exits(cone, scratch, exits);
+  emit_exits(exits, map, base, slot);
+  return left;
+}
+
 HWY_INLINE void emit_crossing(const ClusterTree::Arrays& tree, std::uint32_t cluster, std::uint32_t count,
                               CutoutProgress& progress, Slot& slot) {
   const ConeNumbers& cone = progress.walk.cone();
   const std::uint8_t* corners = tree.corners + 3 * ClusterTree::kMaxTriangles * cluster;
   const VertexNotes notes = note_vertices(tree, cluster, cone, progress.scratch);
-  if (notes.all_beyond) return;
+  const bool touching = progress.rule == CutoutRule::touching;
+  if (notes.all_beyond || (notes.none_inside && !touching)) return;
+  const TextureMap map(cone, progress);
   const std::uint32_t base = slot.vertices;
   const std::size_t first = tree.first_vertex[cluster], vertices = tree.first_vertex[cluster + 1] - first;
   if (notes.all_inside) {
-    emit_vertices(tree, first, vertices, cone, progress, slot);
+    emit_vertices(tree, first, vertices, map, slot);
     emit_all(corners, count, base, slot);
     slot.with_corner += count;
     return;
   }
-  const bool touching = progress.rule == CutoutRule::touching;
   const SieveAnswer answer = sieve_triangles(tree, cluster, count, cone, touching, progress.scratch);
   if (answer.meets == 0) return;
   slot.with_corner += static_cast<std::uint32_t>(__builtin_popcountll(answer.with_corner));
-  emit_vertices(tree, first, vertices, cone, progress, slot);
+  emit_vertices(tree, first, vertices, map, slot);
   if (progress.form == CutoutForm::whole) {
     emit_some(corners, answer.meets, base, slot);
     return;
   }
   emit_some(corners, answer.whole, base, slot);
-  for (std::uint64_t cut = answer.meets & ~answer.whole; cut != 0; cut &= cut - 1)
-    emit_clipped(corners + 3 * static_cast<std::size_t>(__builtin_ctzll(cut)), cone, touching,
+  std::uint64_t left = answer.meets & ~answer.whole;
+  for (left = emit_cut(corners, cone, left, touching, map, base, progress, slot); left != 0; left &= left - 1)
+    emit_clipped(corners + 3 * static_cast<std::size_t>(__builtin_ctzll(left)), cone, touching,
                  progress.scratch, base, slot);
 }
 
@@ -159,8 +265,8 @@ HWY_INLINE void emit_inside(const ClusterTree::Arrays& tree, CutoutProgress& pro
          base + (tree.first_vertex[end + 1] - tree.first_vertex[first]) <= slot.max_vertices)
     ++end;
   const std::uint32_t first_vertex = tree.first_vertex[first];
-  emit_vertices(tree, first_vertex, tree.first_vertex[end] - first_vertex, progress.walk.cone(), progress,
-                slot);
+  emit_vertices(tree, first_vertex, tree.first_vertex[end] - first_vertex,
+                TextureMap(progress.walk.cone(), progress), slot);
   for (std::uint32_t c = first; c < end; ++c) {
     const std::uint32_t count = std::min(kFull, tree.triangle_count - c * kFull);
     emit_all(tree.corners + std::size_t{3} * kFull * c, count, base + tree.first_vertex[c] - first_vertex,
@@ -203,22 +309,69 @@ bool emit_into_mesh(const ClusterTree::Arrays& tree, CutoutProgress& progress, C
   return done;
 }
 
-void collect_into_ranges(const ClusterTree::Arrays& tree, ConeWalk& walk, CutoutRanges& out) {
-  constexpr auto kFull = static_cast<std::uint32_t>(ClusterTree::kMaxTriangles);
-  TriangleRange* ranges = out.ranges.data();
-  std::uint32_t count = 0, triangles = 0, open_end = ~0U;
-  ClusterRun run;
-  while (next_run(tree.nodes, walk.cone(), walk.frames(), run)) {  // at most a range a cluster
-    const std::uint32_t first = run.first * kFull, end = std::min(run.end * kFull, tree.triangle_count);
-    if (first == open_end)
-      ranges[count - 1].count += end - first;
+/// Appends clusters to the ranges, in the tree's order.
+class RangeWriter {
+ public:
+  RangeWriter(const ClusterTree::Arrays& tree, CutoutRanges& out)
+      : tree_(tree), out_(out), to_(out.ranges.data()) {}
+  HWY_INLINE void add(std::uint32_t first_cluster, std::uint32_t end_cluster) {
+    constexpr auto kFull = static_cast<std::uint32_t>(ClusterTree::kMaxTriangles);
+    const std::uint32_t first = first_cluster * kFull,
+                        end = std::min(end_cluster * kFull, tree_.triangle_count);
+    if (first == open_end_)
+      to_[-1].count += end - first;
     else
-      ranges[count++] = {.first = first, .count = end - first};
-    open_end = end;
-    triangles += end - first;
+      *to_++ = {.first = first, .count = end - first};
+    open_end_ = end;
+    triangles_ += end - first;
   }
-  out.count = count;
-  out.triangles = triangles;
+  void finish() {
+    out_.count = static_cast<std::uint32_t>(to_ - out_.ranges.data());
+    out_.triangles = triangles_;
+  }
+
+ private:
+  const ClusterTree::Arrays& tree_;
+  CutoutRanges& out_;
+  TriangleRange* to_;
+  std::uint32_t triangles_ = 0, open_end_ = ~0U;
+};
+
+/// At most a range a cluster. A node whose places are clusters is not entered: its hits are runs of bits.
+void collect_into_ranges(const ClusterTree::Arrays& tree, ConeWalk& walk, CutoutRanges& out) {
+  const ConeNumbers& cone = walk.cone();
+  ConeWalkFrames& frames = walk.frames();
+  RangeWriter ranges(tree, out);
+  while (frames.size > 0) {
+    ConeWalkFrames::Frame& frame = frames.frame[frames.size - 1];
+    if (frame.hit == 0) {
+      --frames.size;
+      continue;
+    }
+    const auto place = static_cast<std::size_t>(__builtin_ctz(frame.hit));
+    frame.hit &= frame.hit - 1;
+    const ClusterTree::Node& node = tree.nodes[frame.node];
+    const std::uint32_t first = node.cluster[place], end = node.cluster[place + 1];
+    if ((frame.inside >> place & 1U) != 0 || end - first == 1) {
+      ranges.add(first, end);
+      continue;
+    }
+    const ClusterTree::Node& child = tree.nodes[node.child[place]];
+    if (!is_lowest(child)) {
+      enter_node<false>(tree.nodes, node.child[place], cone, false, frames);
+      continue;
+    }
+    std::uint32_t hit = meets_of(child, cone, nullptr).hit;
+    for (std::uint32_t at = first; hit != 0;) {
+      const auto skipped = static_cast<std::uint32_t>(__builtin_ctz(hit));
+      hit >>= skipped;
+      const auto length = static_cast<std::uint32_t>(__builtin_ctz(~hit));
+      hit >>= length;
+      ranges.add(at + skipped, at + skipped + length);
+      at += skipped + length;
+    }
+  }
+  ranges.finish();
 }
 
 }  // namespace orcart::HWY_NAMESPACE

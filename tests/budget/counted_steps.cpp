@@ -1,6 +1,8 @@
 // Runs each step at its worst case for callgrind to count: one dump a step, named by it.
 #include <hwy/nanobenchmark.h>
 
+#include <cmath>
+
 #include "board/sim/picture_supply.hpp"
 #include "board/sim/simulated_frame_source.hpp"
 #include "board/sim/simulated_gpio.hpp"
@@ -10,6 +12,7 @@
 #include "firmware-host/stages/pedal_stage.hpp"
 #include "firmware-host/stages/sync_stage.hpp"
 #include "firmware-host/stages/tracker_stage.hpp"
+#include "realtime/mapper/cutout.hpp"
 #include "tests/budget/counted.hpp"
 #include "tests/firmware-host/tracker/tracker_rig.hpp"
 #include "tests/realtime/mapper/mapper_fixture.hpp"
@@ -176,6 +179,36 @@ void mapper(int rows) {
   });
 }
 
+/// The cutout's forms, from within a ball of 20,480 triangles towards all sides: about 1,500 in a view.
+void cutouts(int views) {
+  const TriangleMesh ball = icosphere(30, 5);
+  const auto tree = ClusterTree::create(ball);
+  const auto rays = RayScene::create(ball);
+  if (!tree || !rays) return;
+  Cutout cutout(*tree, *rays, pinhole_scope());
+  CutoutMesh mesh(ball.triangles.size());
+  CutoutRanges ranges(tree->cluster_count());
+  const auto each_view = [&](auto&& cut) {
+    for (int i = 0; i < views; ++i) {
+      const double turn = 2.4 * (i % 25), height = (i % 25 - 12) / 12.5;  // twice the same: twice the work
+      const Eigen::Vector3d along(std::cos(turn) * std::sqrt(1 - height * height),
+                                  std::sin(turn) * std::sqrt(1 - height * height), height);
+      cut(looking(-10 * along, 30 * along));
+    }
+  };
+  const auto emit = [&](CutoutForm form) {
+    each_view([&](const Pose<M, C>& X_MC) {
+      cutout.begin(X_MC, form);
+      while (cutout.next(mesh)) {
+      }
+    });
+  };
+  emit(CutoutForm::clip);  // Embree and the dispatch have been used
+  count("cutout", views, [&] { emit(CutoutForm::whole); });
+  count("clip", views, [&] { emit(CutoutForm::clip); });
+  count("ranges", views, [&] { each_view([&](const Pose<M, C>& X_MC) { cutout.ranges(X_MC, ranges); }); });
+}
+
 }  // namespace
 }  // namespace orcart::testing
 
@@ -189,5 +222,6 @@ int main() {
   for (const int frames : {5, 10}) camera(frames);
   for (const int poses : {32, 64}) match(poses);
   for (const int rows : {20, 40}) mapper(rows);
+  for (const int views : {25, 50}) cutouts(views);
   return 0;
 }

@@ -113,7 +113,8 @@ class InstructionCaps : public ::testing::Test {
   }
   void SetUp() override {
     if (!lack.empty()) GTEST_SKIP() << lack;
-    ASSERT_EQ(counts.size(), 7u) << "pedal, tracker, camera, match, mapper, painting and drawing";
+    ASSERT_EQ(counts.size(), 10u)
+        << "pedal, tracker, camera, match, mapper, cutout, clip, ranges, painting and drawing";
   }
   static inline Counts counts;
   static inline std::string lack = "valgrind is not installed";

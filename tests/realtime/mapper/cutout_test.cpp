@@ -210,6 +210,49 @@ TEST(Cutout, ClippedStaysInTheConeAndKeepsAllThatIsInside) {
   EXPECT_GT(cut, 500U);
 }
 
+TEST(Cutout, ByCornersClippedEndsOnTheConesSurface) {
+  const Scene scene(testing::triangle_soup(4000, 60, 9));
+  Cutout cutout = scene.cutout(CutoutRule::corner);
+  std::mt19937 random(8);
+  std::size_t new_points = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Pose<M, C> X_MC = random_pose(random, 30);
+    const View clipped = view_of(cutout, X_MC, CutoutForm::clip);
+    if (!clipped.valid) continue;
+    std::size_t expected = 0;
+    double area_mm2 = 0;  // each edge's exit by halving, in double precision
+    for (std::uint32_t t = 0; t < scene.mesh.triangles.size(); ++t) {
+      const Triangle corners = scene.triangle(t);
+      std::vector<Eigen::Vector3d> polygon;
+      std::size_t inside = 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Eigen::Vector3d from = corners[c].cast<double>(), to = corners[(c + 1) % 3].cast<double>();
+        const auto in = [&](const Eigen::Vector3d& p) {
+          return depth_in_solid(scene.scope, X_MC, p.cast<float>()) >= 0;
+        };
+        if (in(from)) polygon.push_back(from);
+        inside += in(from) ? 1 : 0;
+        if (in(from) == in(to)) continue;
+        double low = 0, high = 1;  // from is where the edge begins; the inner end is at `low`
+        for (int halved = 0; halved < 40; ++halved) {
+          const double middle = (low + high) / 2, t_in = in(from) ? middle : 1 - middle;
+          (in(from + t_in * (to - from)) ? low : high) = middle;
+        }
+        polygon.push_back(from + (in(from) ? low : 1 - low) * (to - from));
+      }
+      expected += inside == 0 ? 0 : inside == 2 ? 2 : 1;
+      for (std::size_t k = 2; k < polygon.size(); ++k)
+        area_mm2 += 0.5 * (polygon[k - 1] - polygon[0]).cross(polygon[k] - polygon[0]).norm();
+      new_points += inside == 1 || inside == 2 ? 2 : 0;
+    }
+    ASSERT_NEAR(static_cast<double>(clipped.triangles.size()), static_cast<double>(expected), 1) << i;
+    ASSERT_NEAR(clipped.area_mm2, area_mm2, 1e-4 * area_mm2) << i;
+    for (const Triangle& t : clipped.triangles)
+      for (const Eigen::Vector3f& p : t) ASSERT_GT(depth_in_solid(scene.scope, X_MC, p), -2e-4);
+  }
+  EXPECT_GT(new_points, 1000U);
+}
+
 TEST(Cutout, LeavesATriangleWholeThatOnlyTheAxisPierces) {
   const Scene scene(
       {.vertices_mm = {{-200, -200, 20}, {0, 300, 20}, {200, -200, 20}}, .triangles = {{0, 1, 2}}});
