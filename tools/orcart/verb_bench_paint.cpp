@@ -45,6 +45,7 @@ void print(const PaintBenchReport& report) {
     std::printf("%-28s median %6.2f ms, p95 %6.2f ms, max %6.2f ms; of processor time %6.2f ms\n", name,
                 spread.median_ms, spread.p95_ms, spread.max_ms, spread.cpu_median_ms);
   };
+  line("cutout", report.map);
   line("upload", report.upload);
   line("paint", report.paint);
   line("new frame, fixed view", report.fixed_view);
@@ -92,6 +93,9 @@ void add_bench_paint(CLI::App& bench_verb, int& exit_code) {
   paint->add_option("--policy", arguments->settings.policy, "newest (default) or best")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, PaintPolicy>{{"newest", PaintPolicy::newest}, {"best", PaintPolicy::best}}));
+  paint->add_option("--from", arguments->settings.from, "lists (default): the cart's; ranges: whole clusters")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, PaintFrom>{{"lists", PaintFrom::lists}, {"ranges", PaintFrom::ranges}}));
   paint->add_flag("--json", arguments->json, "one JSON object");
   paint->callback([arguments, &exit_code] {
     arguments->settings.cone_half_angle_rad = arguments->cone_deg * std::numbers::pi / 180;
