@@ -28,6 +28,17 @@ Eigen::Vector3d vector_of(const std::vector<double>& xyz) {
   return {xyz[0], xyz[1], xyz[2]};
 }
 
+/// None of a wired tool, whose definition stays in its own memory.
+std::vector<Eigen::Vector3d> markers_of(const ndi::ToolDefinition& tool) {
+  std::vector<Eigen::Vector3d> markers;
+  markers.reserve(static_cast<std::size_t>(tool.marker_count));
+  for (int i = 0; i < tool.marker_count; ++i) {
+    const auto& marker = tool.markers_mm[static_cast<std::size_t>(i)];
+    markers.emplace_back(marker[0], marker[1], marker[2]);
+  }
+  return markers;
+}
+
 }  // namespace
 
 struct Cart::State {
@@ -52,6 +63,7 @@ struct Cart::State {
   std::vector<CutoutPatch> patches;
   std::unique_ptr<Mapper> mapper;
   std::unique_ptr<Painter> painter;
+  std::unique_ptr<ViewErrors> errors;
   std::unique_ptr<Screen> screen;
   std::unique_ptr<NdiDriver> driver;
   std::unique_ptr<PedalStage> pedal;
@@ -71,6 +83,7 @@ struct Cart::State {
 
   Result<void> build_painting();
   Result<void> build_tracker();
+  ChainErrors chain_errors(const NdiSettings& driven) const;
   void build_stages();
   void warm_up();
   ThreadPlan plan(ThreadId id);
@@ -105,9 +118,22 @@ Result<void> Cart::State::build_painting() {
   return {};
 }
 
+ChainErrors Cart::State::chain_errors(const NdiSettings& driven) const {
+  const RegistrationFile& registration = setup.patient.registration;
+  return {.marker_rms_mm = setup.config.marker_rms_mm(),
+          .scope_markers_mm = markers_of(driven.tools[0].definition),
+          .reference_markers_mm = markers_of(driven.tools[1].definition),
+          .registration = registration.covariance,
+          .registration_mm = registration.predicted_tre_mm,
+          .time_s = setup.config.time_deviation_s,
+          .texel_mm = setup.patient.layout.texel_mm};
+}
+
 Result<void> Cart::State::build_tracker() {
   auto settings = settings_of(setup.config.tracker);
   if (!settings) return tl::unexpected(settings.error());
+  errors = std::make_unique<ViewErrors>(setup.patient.scope, setup.patient.registration.X_MR,
+                                        chain_errors(*settings));
   driver = std::make_unique<NdiDriver>(std::move(*settings), setup.ports.tracker);
   return {};
 }
@@ -146,6 +172,7 @@ void Cart::State::build_stages() {
                                                          .lanes = lanes,
                                                          .patches = patches,
                                                          .captures = captures,
+                                                         .errors = errors.get(),
                                                          .sink = setup.session,
                                                          .context = &context,
                                                          .buffer_count = setup.ports.camera.buffer_count()});

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -44,12 +45,17 @@ struct CartConfig {
   CameraConfig camera;
   PedalConfig pedal;
   PanelConfig panel;
-  Nanos tracker_against_video{};    ///< [sync]: added to a frame's mid-exposure before poses are looked up
-  double time_deviation_s = 0.002;  ///< standard deviation of it
-  std::vector<double> view_from = {0, -1, 0};  ///< from the surface's centre to the eye, M
+  Nanos tracker_against_video{};  ///< [sync]: added to a frame's mid-exposure before poses are looked up
+  double time_deviation_s = kAssumedErrors.time_s;  ///< standard deviation of it
+  std::vector<double> view_from = {0, -1, 0};       ///< from the surface's centre to the eye, M
   std::vector<double> view_up = {0, 0, 1};
   SimulationConfig simulation;
 
+  /// RMS of one marker's 3-D error: as stated, or as simulated on each axis.
+  double marker_rms_mm() const {
+    return tracker.kind == TrackerKind::simulated ? std::numbers::sqrt3 * simulation.marker_noise_mm
+                                                  : tracker.marker_rms_mm;
+  }
   /// Whether any input is none of the operating room's: every view then wears a mark.
   bool simulated() const {
     return !is_device(tracker.kind) || camera.kind == CameraKind::simulated ||

@@ -78,6 +78,9 @@ void read_tracker(const TomlSection& section, TrackerConfig& tracker) {
       {{"auto", PollForm::automatic}, {"tx", PollForm::tx}, {"bx", PollForm::bx}, {"bx2", PollForm::bx2}},
       PollForm::automatic);
   tracker.beeps = static_cast<int>(section.integer("beeps", {.min = 0, .max = 9, .fallback = 0}));
+  if (is_device(tracker.kind))
+    tracker.marker_rms_mm =
+        section.number("marker_rms_mm", {.min = 0.001, .max = 5, .fallback = kAssumedErrors.marker_rms_mm});
   tracker.max_error_mm = section.number("max_error_mm", {.min = 0, .max = 10, .fallback = 0.0});
 }
 

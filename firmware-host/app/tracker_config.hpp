@@ -7,6 +7,7 @@
 
 #include "board/ports/byte_link.hpp"
 #include "firmware-host/files/toml_reader.hpp"
+#include "firmware-host/stages/assumed_errors.hpp"
 #include "firmware-host/tracker/ndi_settings.hpp"
 
 namespace orcart {
@@ -27,8 +28,10 @@ struct TrackerConfig {
   std::filesystem::path scope_rom, reference_rom;  ///< empty for a wired tool
   TrackedTool::Port scope_port, reference_port;    ///< where the wired one is plugged in
   PollForm poll = PollForm::automatic;
-  int beeps = 0;            ///< when all tools are tracked
-  double max_error_mm = 0;  ///< a fit worse than this is doubtful; 0: the device's own limit will do
+  int beeps = 0;  ///< when all tools are tracked
+  double marker_rms_mm =
+      kAssumedErrors.marker_rms_mm;  ///< of one marker's 3-D error, for the predicted error
+  double max_error_mm = 0;           ///< a fit worse than this is doubtful; 0: the device's own limit will do
 
   std::string usb_serial;          ///< usb: empty where the only one of NDI's will do
   std::string usb_port;            ///< usb: such as 1-2.3

@@ -8,6 +8,7 @@ PainterStage::PainterStage(const Parts& parts)
       lanes_(parts.lanes),
       patches_(parts.patches),
       captures_(parts.captures),
+      errors_(parts.errors),
       sink_(parts.sink),
       context_(parts.context),
       holds_(parts.buffer_count, 0) {}
@@ -88,6 +89,7 @@ void PainterStage::paint(const PaintOrder& order, Instant now) noexcept {
   painter_.upload(order.frame.image);
   upload_due_ = have_newest_;  // the inset goes back to the newest picture
   const bool last = patches_[order.patch].last_part;
+  if (last && errors_ != nullptr) painter_.set_view_error(errors_->at(order.X_MC));
   const PaintReport report = painter_.paint(patches_[order.patch], order.request.unit);
   (void)lanes_.patches_home.try_push(order.patch);
   if (!last) return;

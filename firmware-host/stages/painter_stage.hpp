@@ -9,6 +9,7 @@
 #include "firmware-host/stages/capture_sink.hpp"
 #include "firmware-host/stages/frame_ledger.hpp"
 #include "firmware-host/stages/lanes.hpp"
+#include "firmware-host/stages/view_errors.hpp"
 #include "realtime/kernel/stage.hpp"
 #include "render/atlas/painter.hpp"
 #include "render/egl/context.hpp"
@@ -38,7 +39,8 @@ class PainterStage final : public Stage {
     Lanes& lanes;
     std::vector<CutoutPatch>& patches;
     Ledger<CaptureRecord>& captures;
-    CaptureSink* sink = nullptr;   ///< null: nothing is kept on disk
+    const ViewErrors* errors = nullptr;  ///< null: the painter goes by the passport's residuals
+    CaptureSink* sink = nullptr;         ///< null: nothing is kept on disk
     GlContext* context = nullptr;  ///< made current on the thread that steps; null: it is current already
     std::uint32_t buffer_count = 0;
   };
@@ -68,6 +70,7 @@ class PainterStage final : public Stage {
   Lanes& lanes_;
   std::vector<CutoutPatch>& patches_;
   Ledger<CaptureRecord>& captures_;
+  const ViewErrors* errors_;
   CaptureSink* sink_;
   GlContext* context_;
   std::vector<std::uint8_t> holds_;  ///< per buffer: how many reasons there are to keep it

@@ -39,9 +39,10 @@ struct PainterSettings {
   PictureCopy picture_copy = PictureCopy::cpu;
 };
 
-/// One standard deviation of what a view's pose and calibration leave open. The record's predicted error at
-/// distance d, where a pixel spans f mm across the line of sight, and angle a from the normal:
-/// sqrt(position^2 + (angle d)^2 + (pixels f)^2) / cos a.
+/// What a view's pose and calibration leave open, each as RMS over both axes across the line of sight. The
+/// record's predicted error at distance d, where a pixel spans f mm across the line of sight, and angle a
+/// from the normal: sqrt(position^2 + (angle d)^2 + (pixels f)^2) sqrt((1 + 1 / cos^2 a) / 2), since the
+/// slant stretches one of the two axes.
 struct ViewError {
   float position_mm = 0;
   float angle_rad = 0;

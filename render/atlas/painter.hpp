@@ -66,7 +66,7 @@ class Painter {
   double coverage() noexcept;
   AtlasPicture read_back() const;
   AtlasRecords read_records() const;
-  /// What the next views' poses are worth; at first what the passport's residuals say.
+  /// What the next views' poses are worth; at first what the passport's residuals say. Allocates nothing.
   void set_view_error(const ViewError& error) noexcept;
 
   /// How often the atlas was changed so far, and the box of M (mm) that holds what the n-th change touched (1

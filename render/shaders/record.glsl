@@ -14,7 +14,7 @@ uvec4 record_of(float distance_mm, float cos_angle) {
   float across_mm = u_pixel_rad * distance_mm;
   vec3 parts = u_view_error * vec3(1.0, distance_mm, across_mm);
   return uvec4(u_capture, as_16_bits(degrees(acos(min(cos_angle, 1.0))) * 100.0), as_16_bits(1000.0 * across_mm / cos_angle),
-               as_16_bits(1000.0 * length(parts) / cos_angle));
+               as_16_bits(1000.0 * length(parts) * sqrt(0.5 + 0.5 / (cos_angle * cos_angle))));
 }
 
 // Mirrored light is white, whatever the tissue.

@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "firmware-host/stages/assumed_errors.hpp"
+
 namespace orcart {
 
 /// Where an error comes from. Each can be drawn alone.
@@ -28,20 +30,25 @@ constexpr ComponentSet only(Component component) {
 struct ErrorModel {
   /// RMS of a marker's 3-D error, as a tracker's accuracy is stated; each axis has it divided by sqrt(3).
   /// Drawn for every marker of scope and reference, and the bodies are fitted to them.
-  double marker_rms_mm = 0.12;
-  double fiducial_rms_mm = 0.3;  ///< RMS of a fiducial's 3-D localisation error, image and pointer together
+  double marker_rms_mm = kAssumedErrors.marker_rms_mm;
+  double fiducial_rms_mm =
+      kAssumedErrors
+          .fiducial_rms_mm;  ///< RMS of a fiducial's 3-D localisation error, image and pointer together
   int fiducials = 6;
-  double hand_eye_mm = 0.12;     ///< of C's place in the scope marker, each axis
-  double hand_eye_rad = 0.0012;  ///< of its turn, each axis
-  double lens_centre_px = 0.4;   ///< each axis
-  double lens_focal = 0.001;     ///< relative
-  double lens_edge_px = 0.3;  ///< of the distortion, at the edge of the picture; with lens_root: of the lens
-  double refraction = 0.001;  ///< relative, of the medium's index against the calibration's
-  double time_s = 0.002;      ///< of the calibrated offset and the tracker's latency together
-  double speed_mm_s = 10;     ///< of the tip at a capture, in a direction of chance
-  double turn_rad_s = 0.1;    ///< likewise
-  double picture_px = 0.3;    ///< of a landmark's place in the picture, each axis
-  double texel_mm = 0.15;     ///< edge of a texel of the atlas: the paint's own grain
+  double hand_eye_mm = kAssumedErrors.hand_eye_mm;        ///< of C's place in the scope marker, each axis
+  double hand_eye_rad = kAssumedErrors.hand_eye_rad;      ///< of its turn, each axis
+  double lens_centre_px = kAssumedErrors.lens_centre_px;  ///< each axis
+  double lens_focal = kAssumedErrors.lens_focal;          ///< relative
+  double lens_edge_px =
+      kAssumedErrors
+          .lens_edge_px;  ///< of the distortion, at the edge of the picture; with lens_root: of the lens
+  double refraction =
+      kAssumedErrors.refraction;          ///< relative, of the medium's index against the calibration's
+  double time_s = kAssumedErrors.time_s;  ///< of the calibrated offset and the tracker's latency together
+  double speed_mm_s = kAssumedErrors.speed_mm_s;  ///< of the tip at a capture, in a direction of chance
+  double turn_rad_s = kAssumedErrors.turn_rad_s;  ///< likewise
+  double picture_px = kAssumedErrors.picture_px;  ///< of a landmark's place in the picture, each axis
+  double texel_mm = 0.15;                         ///< edge of a texel of the atlas: the paint's own grain
 
   /// Where passport and registration state what they leave open: columns whose squares sum up to the
   /// covariance. They take the place of the standard deviations above (see stated_errors.hpp).

@@ -7,11 +7,9 @@
 #include <numbers>
 
 #include "board/sim/scope_camera.hpp"
-#include "firmware-host/files/scope_file.hpp"
-#include "firmware-host/files/surface_file.hpp"
 #include "firmware-host/offline/offline_painter.hpp"
+#include "tests/tools/evaluate/texels/demo_scene.hpp"
 #include "tools/evaluate/draw.hpp"
-#include "tools/evaluate/marker_bodies.hpp"
 #include "tools/evaluate/statistics.hpp"
 
 namespace orcart {
@@ -19,20 +17,6 @@ namespace {
 
 constexpr double kPeriod_mm = 20;
 constexpr int kPhases = 3;
-
-/// The demo's ventricle, scope and marker bodies.
-struct Demo {
-  std::filesystem::path share = std::filesystem::path(std::getenv("ORCART_SOURCE_DIR")) / "share";
-  Surface surface = read_surface(share / "surfaces/ventricle.ply").value();
-  RayScene rays = *RayScene::create(surface.mesh);
-  ScopeModel scope = read_scope(share / "scopes/neuro-2p7.toml").value();
-  EvaluationScene scene{.mesh = surface.mesh,
-                        .rays = rays,
-                        .scope = scope,
-                        .X_MR = read_registration(share / "carts/demo-registration.toml")->X_MR,
-                        .scope_markers_mm = markers_of_body(share / "tools/scope.rom").value(),
-                        .reference_markers_mm = markers_of_body(share / "tools/reference.rom").value()};
-};
 
 /// Where each texel's light came from, along one axis modulo the period; negative where it is not painted.
 std::vector<double> decoded_axis(const Demo& demo, OfflinePainter& painter, int axis, const Pose<M, C>& truth,
