@@ -10,17 +10,17 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "firmware-host/files/picture_file.hpp"
-#include "firmware-host/files/surface_file.hpp"
-#include "firmware-host/offline/offline_painter.hpp"
 #include "tests/real_data/data_folder.hpp"
+#include "tools/evaluate/recorded/flat_painting.hpp"
 
 namespace orcart {
 namespace {
 
 constexpr const char* kSet = "endo_lap_chess_overlay";
-constexpr double kMarginMm = 2, kBoardWidthMm = 39, kBoardHeightMm = 27, kSquareMm = 3;
-constexpr double kPixelMm = 0.05;  ///< of the painting resampled onto a grid of the plane
+constexpr int kBoardWidthMm = 39, kBoardHeightMm = 27, kSquareMm = 3;
+constexpr double kPixelMm = 0.05;  ///< of atlas and flat painting
+/// The board with a margin of 2 mm.
+const PlaneExtent kPlane{.low_mm = {-2, -2}, .high_mm = {41, 29}};
 
 template <std::size_t Count>
 std::array<double, Count> numbers_of(const std::filesystem::path& file) {
@@ -51,74 +51,6 @@ Pose<M, C> published_pose(const std::filesystem::path& folder) {
       .inverse();
 }
 
-/// The board's plane z = 0 with a margin, in squares of 1 mm; its normal looks at the camera, towards -z.
-Surface board_plane() {
-  const int columns = static_cast<int>(kBoardWidthMm + 2 * kMarginMm);
-  const int rows = static_cast<int>(kBoardHeightMm + 2 * kMarginMm);
-  TriangleMesh mesh;
-  for (int y = 0; y <= rows; ++y)
-    for (int x = 0; x <= columns; ++x)
-      mesh.vertices_mm.emplace_back(static_cast<float>(x - kMarginMm), static_cast<float>(y - kMarginMm), 0);
-  const auto at = [&](int x, int y) { return static_cast<std::uint32_t>(y * (columns + 1) + x); };
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < columns; ++x) {
-      mesh.triangles.push_back({at(x, y), at(x, y + 1), at(x + 1, y)});
-      mesh.triangles.push_back({at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)});
-    }
-  return *make_surface(std::move(mesh), "the board's plane");
-}
-
-/// The atlas between texel centres, grey 0..255; negative where a neighbour has no paint.
-double grey_at(const AtlasPicture& atlas, const Eigen::Vector2f& texels) {
-  const Eigen::Vector2f centred = texels - Eigen::Vector2f(0.5f, 0.5f);
-  const int x0 = static_cast<int>(std::floor(centred.x())), y0 = static_cast<int>(std::floor(centred.y()));
-  double sum = 0;
-  for (const auto& [dx, dy] : {std::array{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
-    const auto* rgba = &atlas.rgba[4 * static_cast<std::size_t>((y0 + dy) * atlas.width_texels + x0 + dx)];
-    if (rgba[3] == 0) return -1;
-    const double weight = (1 - std::abs(centred.x() - static_cast<float>(x0 + dx))) *
-                          (1 - std::abs(centred.y() - static_cast<float>(y0 + dy)));
-    sum += weight * (0.299 * rgba[0] + 0.587 * rgba[1] + 0.114 * rgba[2]);
-  }
-  return sum;
-}
-
-/// Where in the atlas a point of the plane lies, texels; `board_mm` counts from the plane's first corner.
-Eigen::Vector2f texels_of(const Surface& surface, const AtlasLayout& layout,
-                          const Eigen::Vector2d& board_mm) {
-  constexpr int kColumns = static_cast<int>(kBoardWidthMm + 2 * kMarginMm);
-  const Eigen::Vector2d within = board_mm - board_mm.array().floor().matrix();
-  const int square = static_cast<int>(board_mm.y()) * kColumns + static_cast<int>(board_mm.x());
-  const auto triangle = static_cast<std::size_t>(2 * square + (within.sum() > 1 ? 1 : 0));
-  const auto corner = [&](std::size_t i) -> Eigen::Vector2d {
-    return surface.mesh.vertices_mm[surface.mesh.triangles[triangle][i]].head<2>().cast<double>();
-  };
-  Eigen::Matrix2d edges;
-  edges << corner(1) - corner(0), corner(2) - corner(0);
-  const Eigen::Vector2d offset = board_mm.array() - kMarginMm;
-  const Eigen::Vector2f b = (edges.inverse() * (offset - corner(0))).cast<float>();
-  const auto& place = layout.corners_texels[triangle];
-  return place[0] + b.x() * (place[1] - place[0]) + b.y() * (place[2] - place[0]);
-}
-
-/// The painting as a picture of the plane: pixel (0, 0) is centred on (-margin, -margin) mm. Only the plane's
-/// own border may lack paint, as every silhouette does.
-cv::Mat resampled(const Surface& surface, const AtlasLayout& layout, const AtlasPicture& atlas) {
-  const int width = static_cast<int>(std::lround((kBoardWidthMm + 2 * kMarginMm) / kPixelMm));
-  const int height = static_cast<int>(std::lround((kBoardHeightMm + 2 * kMarginMm) / kPixelMm));
-  const cv::Rect without_border = {10, 10, width - 20, height - 20};
-  cv::Mat picture(height, width, CV_8UC1);
-  int unpainted = 0;
-  for (int v = 0; v < height; ++v)
-    for (int u = 0; u < width; ++u) {
-      const double grey = grey_at(atlas, texels_of(surface, layout, {u * kPixelMm, v * kPixelMm}));
-      if (grey < 0 && without_border.contains({u, v})) ++unpainted;
-      picture.at<std::uint8_t>(v, u) = static_cast<std::uint8_t>(std::lround(std::max(grey, 0.0)));
-    }
-  EXPECT_EQ(unpainted, 0);
-  return picture;
-}
-
 /// Looks at the picture where a person asks for it.
 void keep_for_eyes(const cv::Mat& picture) {
   const char* folder = std::getenv("ORCART_PICTURES");
@@ -134,23 +66,20 @@ using Corners = std::vector<Eigen::Vector2d>;  ///< on the plane, mm, row by row
 
 Corners known_corners() {
   Corners corners;
-  for (double y = 0; y <= kBoardHeightMm; y += kSquareMm)
-    for (double x = 0; x <= kBoardWidthMm; x += kSquareMm) corners.emplace_back(x, y);
+  for (int y = 0; y <= kBoardHeightMm; y += kSquareMm)
+    for (int x = 0; x <= kBoardWidthMm; x += kSquareMm) corners.emplace_back(x, y);
   return corners;
 }
 
 /// Found in the painting, each from where it is known to be.
-Corners painted_corners(const cv::Mat& picture) {
+Corners painted_corners(const FlatPainting& flat, const cv::Mat& picture) {
   std::vector<cv::Point2f> points;
-  for (const Eigen::Vector2d& corner : known_corners())
-    points.emplace_back(static_cast<float>((corner.x() + kMarginMm) / kPixelMm),
-                        static_cast<float>((corner.y() + kMarginMm) / kPixelMm));
+  for (const Eigen::Vector2d& corner : known_corners()) points.push_back(flat.pixel_of(corner));
   const int half_window = static_cast<int>(0.7 / kPixelMm);
   cv::cornerSubPix(picture, points, {half_window, half_window}, {-1, -1},
                    {cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 100, 1e-4});
   Corners corners;
-  for (const cv::Point2f& point : points)
-    corners.emplace_back(point.x * kPixelMm - kMarginMm, point.y * kPixelMm - kMarginMm);
+  for (const cv::Point2f& point : points) corners.push_back(flat.place_mm(point));
   return corners;
 }
 
@@ -194,18 +123,20 @@ TEST(EndoOverlay, CornersLieAtTheirMillimetresInThePainting) {
   if (!folder) GTEST_SKIP() << testing::kNoData;
   auto frame = read_picture(*folder / "left-1095-undistorted.png");
   ASSERT_TRUE(frame) << frame.error().message;
-  const Surface plane = board_plane();
   const ScopeModel scope = published_scope(*folder);
   const Pose<M, C> X_MC = published_pose(*folder);
-  auto painter = OfflinePainter::create(plane, scope, {.texel_mm = 0.05});
-  ASSERT_TRUE(painter) << painter.error().message;
-  const auto painted = painter->paint(frame->descriptor(), X_MC);
-  ASSERT_TRUE(painted) << painted.error().message;
-  EXPECT_EQ(painted->triangles, plane.mesh.triangles.size());
+  std::vector<PosedPicture> pictures;
+  pictures.push_back({.picture = *std::move(frame), .X_MC = X_MC});
+  const auto flat = paint_plane(kPlane, scope, pictures, {.texel_mm = kPixelMm});
+  ASSERT_TRUE(flat) << flat.error().message;
+  // But for the border, which blends into nothing as every silhouette does.
+  const cv::Mat within = flat->painted(cv::Rect(10, 10, flat->painted.cols - 20, flat->painted.rows - 20));
+  EXPECT_EQ(cv::countNonZero(within), within.rows * within.cols);
 
-  const cv::Mat picture = resampled(plane, painter->layout(), painter->painter().read_back());
+  cv::Mat picture;
+  cv::cvtColor(flat->bgr, picture, cv::COLOR_BGR2GRAY);
   keep_for_eyes(picture);
-  const Corners found = painted_corners(picture);
+  const Corners found = painted_corners(*flat, picture);
   const Figures error = differences(found, known_corners());
   const Corners published = published_corners(*folder, scope, X_MC);
   const Figures arithmetic = differences(found, published);

@@ -162,6 +162,12 @@ Result<SeenPictures> see_boards(const std::vector<std::filesystem::path>& images
   return seen;
 }
 
+Result<void> check_size(const BoardView& view, const ScopeModel& scope) {
+  if (view.width_px == scope.width_px && view.height_px == scope.height_px) return {};
+  return fail(view.image.string() + json::format(": %dx%d px; the scope's %dx%d are accepted", view.width_px,
+                                                 view.height_px, scope.width_px, scope.height_px));
+}
+
 Result<CameraCalibration> calibrate_camera(const CameraCommand& command, const Progress& progress) {
   if (command.images.empty())
     return fail("no pictures were given; three or more pictures of the pattern are accepted");

@@ -47,6 +47,9 @@ struct SeenPictures {
 Result<SeenPictures> see_boards(const std::vector<std::filesystem::path>& images, const Pattern& pattern,
                                 const Progress& progress);
 
+/// Refuses a picture that is not of the passport's size.
+Result<void> check_size(const BoardView& view, const ScopeModel& scope);
+
 Result<CameraCalibration> calibrate_camera(const CameraCommand& command, const Progress& progress);
 
 /// Today, or so many days later, as ISO 8601.

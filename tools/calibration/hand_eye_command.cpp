@@ -103,10 +103,7 @@ Result<HandEyeCalibration> calibrate_hand_eye(const HandEyeCommand& command, con
   for (std::size_t i = 0; i < seen->views.size(); ++i) {
     BoardView view = seen->views[i];
     const std::string name = view.image.filename().string();
-    if (view.width_px != scope.width_px || view.height_px != scope.height_px)
-      return fail(view.image.string() + json::format(": %dx%d px; the scope's %dx%d are accepted",
-                                                     view.width_px, view.height_px, scope.width_px,
-                                                     scope.height_px));
+    if (auto sized = check_size(view, scope); !sized) return tl::unexpected(sized.error());
     if (view.corners.empty() || view.anchor == Anchor::none) {
       result.notes.push_back(
           name + " is not used: " +

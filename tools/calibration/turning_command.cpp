@@ -39,10 +39,7 @@ Result<TurningCalibration> calibrate_turning(const TurningCommand& command, cons
   for (std::size_t i = 0; i < seen->views.size(); ++i) {
     const BoardView& view = seen->views[i];
     const std::string name = view.image.filename().string();
-    if (view.width_px != scope.width_px || view.height_px != scope.height_px)
-      return fail(view.image.string() + json::format(": %dx%d px; the scope's %dx%d are accepted",
-                                                     view.width_px, view.height_px, scope.width_px,
-                                                     scope.height_px));
+    if (auto sized = check_size(view, scope); !sized) return tl::unexpected(sized.error());
     if (view.corners.empty() || view.anchor != Anchor::sure) {
       result.notes.push_back(name + " is not used: " +
                              (view.corners.empty()
