@@ -90,7 +90,7 @@ TEST(HandEyeNoise, ATrackerOf025StaysWithinATenthOfItsFloor) {
 struct Declared {
   double true_mm = 0.12, told_mm = 0.12;
   LensRole role = LensRole::held;
-  int views = 8, rooms = 200;
+  int views = 8, rooms = 300;
 };
 
 /// How many of `rooms` calibrations have the truth within what they say is their 95 %, and the mean square of
