@@ -100,4 +100,13 @@ Result<AtlasLayout> build_atlas(const TriangleMesh& mesh, const AtlasSettings& s
               " texels at any size of texel; use fewer triangles");
 }
 
+std::vector<std::array<Eigen::Vector2f, 3>> picture_places(const AtlasLayout& layout) {
+  auto places = layout.corners_texels;
+  for (auto& corners : places)
+    for (Eigen::Vector2f& corner : corners)
+      corner = {corner.x() / static_cast<float>(layout.width_texels),
+                1 - corner.y() / static_cast<float>(layout.height_texels)};
+  return places;
+}
+
 }  // namespace orcart

@@ -45,4 +45,7 @@ struct AtlasLayout {
 
 Result<AtlasLayout> build_atlas(const TriangleMesh& mesh, const AtlasSettings& settings);
 
+/// Each triangle's corners in the picture as other programs say it: 0..1, origin bottom left.
+std::vector<std::array<Eigen::Vector2f, 3>> picture_places(const AtlasLayout& layout);
+
 }  // namespace orcart

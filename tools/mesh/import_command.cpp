@@ -47,9 +47,17 @@ bool is_surface_name(const std::filesystem::path& file) {
 Result<void> check_output(const SurfaceOutput& output) {
   if (output.out.extension() != ".ply")
     return fail(output.out.string() + ": the surface is written as PLY; a name ending in .ply is accepted");
-  const auto folder = output.out.parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder))
-    return fail(folder.string() + ": is no folder; --out is to lie in one that is there");
+  const std::filesystem::path& charts = output.charts.file;
+  constexpr std::array kTextured{".ply", ".obj", ".glb"};
+  if (!charts.empty() && std::find(kTextured.begin(), kTextured.end(), charts.extension()) == kTextured.end())
+    return fail(charts.string() +
+                ": charts are written as PLY, OBJ or GLB; a name ending in .ply, .obj or .glb is "
+                "accepted");
+  if (charts == output.out)
+    return fail(charts.string() + ": is the surface's own name; --charts is to be another file");
+  for (const auto& folder : {output.out.parent_path(), charts.parent_path()})
+    if (!folder.empty() && !std::filesystem::is_directory(folder))
+      return fail(folder.string() + ": is no folder; --out and --charts are to lie in one that is there");
   return {};
 }
 
@@ -62,7 +70,12 @@ Result<void> write_surface(const Surface& surface, const SurfaceOutput& output, 
   report.out = output.out;
   if (const auto trouble = trouble_of(report.mesh)) report.notes.push_back(*trouble);
   if (auto written = write_ply(output.out, surface); !written) return written;
-  return write_levels(surface, output, report);
+  if (auto written = write_levels(surface, output, report); !written) return written;
+  if (output.charts.file.empty()) return {};
+  auto charts = write_charts(surface, output.charts);
+  if (!charts) return tl::unexpected(charts.error());
+  report.charts = *std::move(charts);
+  return {};
 }
 
 Result<SurfaceReport> import_surface(const ImportCommand& command, const SurfaceReader& reader,

@@ -18,6 +18,7 @@ struct SurfaceOutput {
   std::filesystem::path out;   ///< a PLY file
   std::filesystem::path page;  ///< a folder for the page and its pictures; empty: none
   int levels = 0;              ///< thinner copies beside it: NAME-1.ply with half the triangles, and so on
+  ChartOutput charts;
 };
 
 struct ImportCommand {

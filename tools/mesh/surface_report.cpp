@@ -112,6 +112,11 @@ std::string text_of(const SurfaceReport& report) {
     out += text("level       %s: %zu triangles, %.3f mm mean, %.3f max\n",
                 level.file.filename().string().c_str(), level.triangles, level.deviation.mean_mm,
                 level.deviation.max_mm);
+  if (report.charts)
+    out += text("charts      %s: %zu in %dx%d texels of %.3g mm, of which %.0f %% are used\n",
+                report.charts->file.filename().string().c_str(), report.charts->charts,
+                report.charts->size_texels, report.charts->size_texels, report.charts->texel_mm,
+                100 * report.charts->used_share);
   for (const std::string& note : report.notes) out += "note        " + note + "\n";
   out += "hash        " + report.identity.hash + "\nseries      " + report.identity.series + "\n";
   if (!report.identity.frame_of_reference.empty())
@@ -145,7 +150,13 @@ std::string json_of(const SurfaceReport& report) {
     out += std::string(i == 0 ? "" : ", ") + "{\"file\": " + quoted(report.levels[i].file.string()) +
            text(", \"triangles\": %zu, \"deviation\": ", report.levels[i].triangles) +
            json_of(report.levels[i].deviation) + "}";
-  out += "],\n \"notes\": [";
+  out += "],\n ";
+  if (report.charts)
+    out += "\"charts\": {\"file\": " + quoted(report.charts->file.string()) +
+           text(", \"count\": %zu, \"size_texels\": %d, \"texel_mm\": %.4f, \"used_share\": %.4f},\n ",
+                report.charts->charts, report.charts->size_texels, report.charts->texel_mm,
+                report.charts->used_share);
+  out += "\"notes\": [";
   for (std::size_t i = 0; i < report.notes.size(); ++i) out += (i == 0 ? "" : ", ") + quoted(report.notes[i]);
   return out + "],\n \"hash\": " + quoted(report.identity.hash) +
          ", \"series\": " + quoted(report.identity.series) +

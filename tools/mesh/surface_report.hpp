@@ -9,6 +9,7 @@
 #include "firmware-host/files/picture_file.hpp"
 #include "tools/mesh/mesh_distance.hpp"
 #include "tools/mesh/mesh_figures.hpp"
+#include "tools/mesh/surface_charts.hpp"
 
 namespace orcart {
 
@@ -44,6 +45,7 @@ struct SurfaceReport {
   double smoothing_max_mm = 0;
   MeshDistance thinning;  ///< of the vertices before thinning out to the surface after it
   std::vector<SurfaceLevel> levels;
+  std::optional<ChartReport> charts;
   std::vector<std::string> notes;
   std::vector<CaptionedPicture> pictures;  ///< only for a page
   double seconds = 0;

@@ -158,15 +158,6 @@ Result<std::size_t> paint_views(OfflinePainter& painter, const Inputs& inputs, c
 }
 
 /// Texels, row 0 on top, to places with their origin bottom left.
-std::vector<std::array<Eigen::Vector2f, 3>> picture_places(const AtlasLayout& layout) {
-  auto places = layout.corners_texels;
-  for (auto& corners : places)
-    for (Eigen::Vector2f& corner : corners)
-      corner = {corner.x() / static_cast<float>(layout.width_texels),
-                1 - corner.y() / static_cast<float>(layout.height_texels)};
-  return places;
-}
-
 double median_of(std::vector<std::uint16_t> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

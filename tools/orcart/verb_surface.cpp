@@ -201,6 +201,11 @@ void add_surface(CLI::App& app, int& exit_code) {
   verb->add_option("--levels", arguments->output.levels,
                    "thinner copies beside it, each with half the triangles")
       ->check(CLI::Range(0, 8));
+  verb->add_option("--charts", arguments->output.charts.file,
+                   "PLY, OBJ or GLB: the surface with the charts it is painted in, each in its colour");
+  verb->add_option("--texel-mm", arguments->output.charts.texel_mm, "of the charts, mm")
+      ->check(CLI::Range(0.01, 10.0))
+      ->capture_default_str();
   verb->add_option("--out", arguments->output.out, "the surface, a PLY file")->required();
   verb->add_option("--page", arguments->output.page, "a folder for a page with pictures and figures");
   verb->add_flag("--json", arguments->json, "the report as JSON");

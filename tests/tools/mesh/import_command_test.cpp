@@ -37,6 +37,36 @@ TEST(ImportCommand, WritesTheSurfaceAndTellsItsFigures) {
   EXPECT_LT(written->mesh.vertices_mm[1].x(), -9);  // RAS was turned into LPS
 }
 
+TEST(ImportCommand, WritesTheChartsThatTheCartPaintsIn) {
+  const TemporaryFolder folder;
+  const auto report = imported(
+      {.input = folder.write("cube.obj", obj_of(cube(10), "SPACE=LPS")),
+       .output = {.out = folder / "cube.ply", .charts = {.file = folder / "charts.ply", .texel_mm = 0.5}}});
+  ASSERT_TRUE(report) << report.error().message;
+  ASSERT_TRUE(report->charts);
+  EXPECT_EQ(report->charts->charts, 6u) << "a cube's sides";
+  EXPECT_EQ(report->charts->texel_mm, 0.5);
+  const double texels = 6 * 20 * 20;  // 10 mm a side
+  EXPECT_NEAR(report->charts->used_share * report->charts->size_texels * report->charts->size_texels, texels,
+              0.15 * texels);
+  EXPECT_TRUE(std::filesystem::exists(folder / "charts.png"));
+  const auto charts = read_surface(folder / "charts.ply");
+  ASSERT_TRUE(charts) << charts.error().message;
+  EXPECT_EQ(charts->identity.hash, report->identity.hash) << "the same surface, places apart";
+  EXPECT_NE(text_of(*report).find("charts      charts.ply: 6 in"), std::string::npos) << text_of(*report);
+}
+
+TEST(ImportCommand, RefusesChartsUnderANameOfNoTexturedFile) {
+  const TemporaryFolder folder;
+  const auto input = folder.write("cube.obj", obj_of(cube(10), "SPACE=LPS"));
+  for (const char* name : {"charts.stl", "cube.ply", "nowhere/charts.ply"}) {
+    const auto report =
+        imported({.input = input, .output = {.out = folder / "cube.ply", .charts = {.file = folder / name}}});
+    EXPECT_FALSE(report) << name;
+    EXPECT_FALSE(std::filesystem::exists(folder / "cube.ply")) << name;
+  }
+}
+
 TEST(ImportCommand, TellsAnOpenSurface) {
   const TemporaryFolder folder;
   TriangleMesh open = cube(10);
