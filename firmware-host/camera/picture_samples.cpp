@@ -4,35 +4,13 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "realtime/base/luma.hpp"
+
 namespace orcart {
 namespace {
 
 constexpr int kColumns = 64, kRows = 48;
 constexpr std::uint32_t kDark = 24, kBright = 250;
-
-/// Where a pixel's luma lies in plane 0.
-struct LumaLayout {
-  std::size_t step_bytes = 0;  ///< from pixel to pixel; 0 where the format is not known
-  std::size_t first_byte = 0;
-};
-
-constexpr LumaLayout luma_layout(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::yuyv:
-      return {.step_bytes = 2, .first_byte = 0};
-    case PixelFormat::uyvy:
-      return {.step_bytes = 2, .first_byte = 1};
-    case PixelFormat::nv12:
-    case PixelFormat::gray8:
-      return {.step_bytes = 1, .first_byte = 0};
-    case PixelFormat::rgba8888:
-    case PixelFormat::xrgb8888:
-      return {.step_bytes = 4, .first_byte = 1};
-    case PixelFormat::none:
-      break;
-  }
-  return {};
-}
 
 }  // namespace
 

@@ -8,7 +8,8 @@ namespace orcart {
 struct M {};  ///< mesh, the image space of the CT or MR: DICOM's LPS (x left, y posterior, z superior)
 struct T {};  ///< tracker: the position sensor's own axes
 struct R {};  ///< reference marker, fixed to the patient
-struct S {};  ///< scope marker, on the shaft
+struct S {};  ///< scope marker, on the shaft or on the camera head
+struct L {};  ///< second marker of a scope that turns, on whichever of light post and head S is not on
 struct C {};  ///< camera: origin at the optical centre, x right, y down, z forward
 struct E {};  ///< centre of the distal window (what crosshair, distances and tip errors belong to)
 struct P {};  ///< pointer tip

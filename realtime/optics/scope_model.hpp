@@ -35,8 +35,9 @@ struct Turning {
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();  ///< what the picture turns about on the sensor
   double centre_deviation_px = 0;                       ///< standard deviation of it
   TurnMarker marker = TurnMarker::shaft;
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();          ///< head: of the shaft, towards the tip, in S
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the shaft, towards the tip, in S; head, or R_SL
   Eigen::Vector3d axis_point_mm = Eigen::Vector3d::Zero();  ///< head: a point on it, in S
+  std::optional<Eigen::Matrix3d> R_SL;  ///< of the second marker at turn 0; nothing: it has none
 };
 
 /// The passport. Immutable after loading.

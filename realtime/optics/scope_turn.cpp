@@ -1,6 +1,7 @@
 // Points of the sensor go round a centre; C goes round its own axis by as much.
 #include "realtime/optics/scope_turn.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -62,6 +63,20 @@ TurnedOptics optics_at(const ScopeModel& scope, double turn_rad) noexcept {
   return optics;
 }
 
+MarkedTurn turn_of(const Turning& turning, const Eigen::Matrix3d& R_SL) noexcept {
+  const Eigen::Quaterniond since(R_SL * turning.R_SL.value_or(Eigen::Matrix3d::Identity()).transpose());
+  const double along = since.vec().dot(turning.axis);
+  const double twist = std::remainder(2 * std::atan2(along, since.w()), 2 * M_PI);
+  const double across = (since.vec() - along * turning.axis).norm();
+  return {.turn_rad = turning.marker == TurnMarker::head ? twist : -twist,
+          .swing_rad = 2 * std::asin(std::min(across, 1.0))};
+}
+
+Eigen::Matrix3d second_marker_at(const Turning& turning, double turn_rad) noexcept {
+  return about(turning.axis, turning.marker == TurnMarker::head ? turn_rad : -turn_rad) *
+         turning.R_SL.value_or(Eigen::Matrix3d::Identity());
+}
+
 ScopeModel turned(const ScopeModel& scope, double turn_rad) {
   const TurnedOptics optics = optics_at(scope, turn_rad);
   ScopeModel at = scope;
@@ -77,6 +92,7 @@ ScopeModel turned(const ScopeModel& scope, double turn_rad) {
   at.X_SC = optics.X_SC;
   at.X_CE = optics.X_CE;
   if (scope.turning && at.notch_rad) at.notch_rad = std::remainder(*at.notch_rad + turn_rad, 2 * M_PI);
+  if (scope.turning && scope.turning->R_SL) at.turning->R_SL = second_marker_at(*scope.turning, turn_rad);
   return at;
 }
 

@@ -22,6 +22,20 @@ struct TurnedOptics {
 /// nothing is allocated.
 TurnedOptics optics_at(const ScopeModel& scope, double turn_rad) noexcept;
 
+/// What two markers on either side of the coupler say of the turn.
+struct MarkedTurn {
+  double turn_rad = 0;   ///< about the calibrated axis, -pi..pi
+  double swing_rad = 0;  ///< what is left across the axis: noise, or a marker that was bent or slipped
+};
+
+/// The turn by the second marker's rotation in S, now; turning.R_SL must be there. The rotation since turn 0
+/// is split into a twist about the axis and a swing across it (swing-twist decomposition of a quaternion).
+/// Any thread; nothing is allocated.
+MarkedTurn turn_of(const Turning& turning, const Eigen::Matrix3d& R_SL) noexcept;
+
+/// The second marker's rotation in S at a turn: the inverse of turn_of.
+Eigen::Matrix3d second_marker_at(const Turning& turning, double turn_rad) noexcept;
+
 /// The whole passport at a turn; its own turning is for the new zero. Off the real-time path.
 ScopeModel turned(const ScopeModel& scope, double turn_rad);
 

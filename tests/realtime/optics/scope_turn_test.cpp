@@ -133,5 +133,44 @@ TEST(ScopeTurn, WithoutTurningIsThePassportAsItIs) {
   EXPECT_EQ(at.X_SC.rotation, scope.X_SC.rotation);
 }
 
+class EveryMarker : public ::testing::TestWithParam<TurnMarker> {};
+
+TEST_P(EveryMarker, ASecondMarkerTellsTheTurnThatTheOpticsAreAt) {
+  ScopeModel scope = scope_of(LensModel::brown, 30, GetParam());
+  Turning& turning = *scope.turning;
+  turning.axis = Eigen::Vector3d(0.1, -0.2, 1).normalized();
+  turning.R_SL = Eigen::AngleAxisd(1.9, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  for (const double turn_deg : {-179.0, -75.0, 0.0, 12.0, 90.0, 170.0}) {
+    const MarkedTurn told = turn_of(turning, second_marker_at(turning, turn_deg * kDegree));
+    EXPECT_NEAR(told.turn_rad, turn_deg * kDegree, 1e-12);
+    EXPECT_NEAR(told.swing_rad, 0, 1e-7);
+  }
+  if (GetParam() == TurnMarker::shaft) return;
+  // S on the head: the second one is on the shaft and stands still beside the optics.
+  for (const double turn : {-1.0, 0.4, 2.5}) {
+    const Eigen::Matrix3d sensor = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const Eigen::Matrix3d optics = optics_at(scope, turn).X_SC.rotation * sensor;
+    EXPECT_TRUE((second_marker_at(turning, turn).transpose() * optics)
+                    .isApprox(turning.R_SL->transpose() * scope.X_SC.rotation, 1e-12));
+  }
+}
+
+TEST_P(EveryMarker, ASecondMarkerThatWasBentShowsAsSwing) {
+  Turning turning = *scope_of(LensModel::brown, 30, GetParam()).turning;
+  turning.R_SL = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d bent = Eigen::AngleAxisd(8 * kDegree, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  const MarkedTurn told = turn_of(turning, bent * second_marker_at(turning, 0.5));
+  EXPECT_NEAR(told.swing_rad, 8 * kDegree, 1e-9);
+  EXPECT_NEAR(told.turn_rad, 0.5, 1e-9);
+}
+
+TEST_P(EveryMarker, ATurnedPassportCountsItsSecondMarkerFromTheNewZero) {
+  ScopeModel scope = scope_of(LensModel::brown, 30, GetParam());
+  scope.turning->R_SL = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  const ScopeModel at = turned(scope, 0.6);
+  EXPECT_NEAR(turn_of(*at.turning, second_marker_at(*scope.turning, 0.9)).turn_rad, 0.3, 1e-12);
+}
+INSTANTIATE_TEST_SUITE_P(ScopeTurn, EveryMarker, ::testing::Values(TurnMarker::shaft, TurnMarker::head));
+
 }  // namespace
 }  // namespace orcart
