@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "realtime/base/image.hpp"
 #include "realtime/base/instant.hpp"
@@ -15,6 +16,7 @@ struct CapturedFrame {
   Instant exposure_start{};
   Instant exposure_end{};
   Instant dequeued_at{};
+  std::optional<double> notch_turn_rad;  ///< by the picture's notch; nothing: not looked for, or not known
 
   Instant mid_exposure() const { return exposure_start + (exposure_end - exposure_start) / 2; }
 };

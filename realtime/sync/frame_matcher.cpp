@@ -25,10 +25,16 @@ std::optional<MatchedFrame> FrameMatcher::next(Instant now, const PoseHistory& p
   if (!ready && !waited) return std::nullopt;
 
   MatchedFrame answer{.frame = pop(), .pose = poses.at(looked_up), .refusal = Refusal::none};
+  const bool by_notch = settings_.turn == TurnSource::notch;
+  answer.turn_rad = by_notch ? answer.frame.notch_turn_rad.value_or(0) : answer.pose.turn_rad;
   if (!decided)
     answer.refusal = Refusal::too_late;
   else if (!answer.pose.may_paint())
-    answer.refusal = poses.sampled_around(looked_up) ? Refusal::tool_unseen : Refusal::no_pose;
+    answer.refusal = poses.lacks_turn_around(looked_up) ? Refusal::turn_unknown
+                     : poses.sampled_around(looked_up)  ? Refusal::tool_unseen
+                                                        : Refusal::no_pose;
+  else if (by_notch && !answer.frame.notch_turn_rad)
+    answer.refusal = Refusal::turn_unknown;
   return answer;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "realtime/sync/captured_frame.hpp"
+#include "realtime/sync/notch_turn.hpp"
 #include "realtime/sync/pose_history.hpp"
 #include "realtime/sync/refusal.hpp"
 #include "realtime/sync/stamp_check.hpp"
@@ -15,14 +16,16 @@
 namespace orcart {
 
 struct FrameMatcherSettings {
-  Nanos longest_wait = 60ms;      ///< from mid-exposure; then the frame is refused
-  Nanos tracker_against_video{};  ///< calibrated; added to mid-exposure before the pose is looked up
+  Nanos longest_wait = 60ms;           ///< from mid-exposure; then the frame is refused
+  TurnSource turn = TurnSource::told;  ///< notch: a frame without a turn is refused
+  Nanos tracker_against_video{};       ///< calibrated; added to mid-exposure before the pose is looked up
 };
 
 /// A frame and the pose it was taken from, or why there is none.
 struct MatchedFrame {
   CapturedFrame frame;
-  PoseAnswer pose;  ///< may_paint() where refusal is none
+  PoseAnswer pose;      ///< may_paint() where refusal is none
+  double turn_rad = 0;  ///< of the light post since the passport's turn; 0 where it is told
   Refusal refusal = Refusal::none;
 };
 

@@ -2,12 +2,20 @@
 #include "realtime/sync/pose_history.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace orcart {
 namespace {
 
 double fraction_of(Instant t, const PoseSample& from, const PoseSample& to) {
   return seconds(t - from.measured_at) / seconds(to.measured_at - from.measured_at);
+}
+
+/// The shorter way round.
+double turn_between(const PoseSample& from, const PoseSample& to, double fraction) {
+  const double start = from.turn_rad.value_or(0);
+  return start + fraction * std::remainder(to.turn_rad.value_or(0) - start, 2 * std::numbers::pi);
 }
 
 }  // namespace
@@ -31,7 +39,7 @@ PoseHistory::Neighbours PoseHistory::neighbours(Instant t) const noexcept {
   Neighbours found;
   for (std::size_t age = 0; age < size_; ++age) {
     const PoseSample& sample = back(age);
-    if (!sample.complete()) continue;
+    if (!complete(sample)) continue;
     if (sample.measured_at <= t) {
       found.before = &sample;
       break;
@@ -49,22 +57,32 @@ PoseAnswer PoseHistory::at(Instant t) const noexcept {
   const Nanos distance = std::min(since, until);
   if (nearest == nullptr) return {};
   if (distance <= settings_.exact_within)
-    return {.kind = PoseKind::exact, .X_RS = nearest->X_RS(), .distance = distance};
+    return {.kind = PoseKind::exact,
+            .X_RS = nearest->X_RS(),
+            .distance = distance,
+            .turn_rad = nearest->turn_rad.value_or(0)};
   if (before == nullptr) return {};
   if (after == nullptr) return predict(*before, t);
   if (after->measured_at - before->measured_at > longest_gap()) return {};
+  const double fraction = fraction_of(t, *before, *after);
   return {.kind = PoseKind::interpolated,
-          .X_RS = interpolate(before->X_RS(), after->X_RS(), fraction_of(t, *before, *after)),
-          .distance = distance};
+          .X_RS = interpolate(before->X_RS(), after->X_RS(), fraction),
+          .distance = distance,
+          .turn_rad = turn_between(*before, *after, fraction)};
 }
 
 PoseAnswer PoseHistory::predict(const PoseSample& last, Instant t) const noexcept {
   const Nanos distance = t - last.measured_at;
   if (&last != &back(0) || distance > settings_.longest_prediction) return {};
-  PoseAnswer answer{.kind = PoseKind::predicted, .X_RS = last.X_RS(), .distance = distance};
+  PoseAnswer answer{.kind = PoseKind::predicted,
+                    .X_RS = last.X_RS(),
+                    .distance = distance,
+                    .turn_rad = last.turn_rad.value_or(0)};
   const PoseSample* earlier = neighbours(last.measured_at - Nanos{1}).before;
-  if (earlier != nullptr && last.measured_at - earlier->measured_at <= longest_gap())
+  if (earlier != nullptr && last.measured_at - earlier->measured_at <= longest_gap()) {
     answer.X_RS = interpolate(earlier->X_RS(), answer.X_RS, fraction_of(t, *earlier, last));
+    answer.turn_rad = turn_between(*earlier, last, fraction_of(t, *earlier, last));
+  }
   return answer;
 }
 
@@ -73,6 +91,16 @@ bool PoseHistory::decided(Instant t) const noexcept {
   if (newest() <= t + settings_.exact_within) return false;
   const PoseSample* before = neighbours(t).before;
   return before == nullptr || newest() - before->measured_at >= longest_gap();
+}
+
+bool PoseHistory::lacks_turn_around(Instant t) const noexcept {
+  const auto lacks = [&](const PoseSample* sample) {
+    return settings_.needs_turn && sample != nullptr && sample->complete() && !sample->turn_rad;
+  };
+  const PoseSample *before = nullptr, *after = nullptr;
+  for (std::size_t age = 0; age < size_ && before == nullptr; ++age)
+    (back(age).measured_at <= t ? before : after) = &back(age);
+  return lacks(before) || lacks(after);
 }
 
 bool PoseHistory::sampled_around(Instant t) const noexcept {

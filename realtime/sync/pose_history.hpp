@@ -15,6 +15,7 @@ struct PoseHistorySettings {
   Nanos exact_within = 200us;       ///< a sample this near is the answer as it stands
   Nanos longest_prediction = 50ms;  ///< beyond the newest sample nothing is said after this
   std::size_t capacity = 128;
+  bool needs_turn = false;  ///< a sample without turn_rad counts as one in which the scope was not seen
 };
 
 /// One thread. Memory is taken in the constructor only.
@@ -34,6 +35,9 @@ class PoseHistory {
   /// No sample still to come can make at(t) a pose that may paint, or turn it into another one.
   bool decided(Instant t) const noexcept;
 
+  /// Of the samples next to t, one shows scope and reference but does not tell the turn that is needed.
+  bool lacks_turn_around(Instant t) const noexcept;
+
   /// There are samples within a period of t on both sides: where at(t) is none, a tool was not seen.
   bool sampled_around(Instant t) const noexcept;
 
@@ -49,6 +53,9 @@ class PoseHistory {
   };
   const PoseSample& back(std::size_t age) const noexcept {
     return ring_[(next_ + ring_.size() - 1 - age) % ring_.size()];
+  }
+  bool complete(const PoseSample& sample) const noexcept {
+    return sample.complete() && (!settings_.needs_turn || sample.turn_rad);
   }
   Neighbours neighbours(Instant t) const noexcept;
   PoseAnswer predict(const PoseSample& last, Instant t) const noexcept;

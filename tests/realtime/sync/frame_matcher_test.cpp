@@ -146,5 +146,62 @@ TEST(FrameMatcher, AllocatesNothing) {
   }));
 }
 
+PoseSample turned_at(Instant t, double turn_rad) {
+  PoseSample sample = sample_at(t);
+  sample.turn_rad = turn_rad;
+  return sample;
+}
+
+TEST(FrameMatcherTurn, IsInterpolatedTheShorterWayRoundFromSamplesOfTheSameInstantsAsThePose) {
+  PoseHistory poses({.period = 16ms, .needs_turn = true});
+  FrameMatcher matcher({.turn = TurnSource::marker});
+  (void)matcher.add(frame_at(at_ms(20)));
+  ASSERT_TRUE(poses.push(turned_at(at_ms(16), 3.0)));
+  ASSERT_TRUE(poses.push(turned_at(at_ms(32), -3.0)));
+  const auto matched = matcher.next(at_ms(45), poses);
+  ASSERT_TRUE(matched);
+  EXPECT_EQ(matched->refusal, Refusal::none);
+  EXPECT_NEAR(matched->turn_rad, 3.0 + 0.25 * (2 * 3.14159265358979 - 6.0), 1e-9);
+}
+
+TEST(FrameMatcherTurn, ThatTheMarkersDoNotTellRefusesTheFrameAndSaysSo) {
+  PoseHistory poses({.period = 16ms, .needs_turn = true});
+  FrameMatcher matcher({.turn = TurnSource::marker});
+  (void)matcher.add(frame_at(at_ms(20)));
+  for (const double ms : {0.0, 16.0, 32.0, 48.0})
+    ASSERT_TRUE(poses.push(ms == 0 ? turned_at(at_ms(ms), 1) : sample_at(at_ms(ms))));
+  const auto matched = matcher.next(at_ms(60), poses);
+  ASSERT_TRUE(matched);
+  EXPECT_EQ(matched->refusal, Refusal::turn_unknown);
+}
+
+TEST(FrameMatcherTurn, ThatIsMissingInOneSampleIsBridgedAsAPoseIs) {
+  PoseHistory poses({.period = 16ms, .needs_turn = true});
+  FrameMatcher matcher({.turn = TurnSource::marker});
+  (void)matcher.add(frame_at(at_ms(20)));
+  ASSERT_TRUE(poses.push(turned_at(at_ms(0), 1)));
+  ASSERT_TRUE(poses.push(sample_at(at_ms(16))));
+  ASSERT_TRUE(poses.push(turned_at(at_ms(32), 1.32)));
+  const auto matched = matcher.next(at_ms(60), poses);
+  ASSERT_TRUE(matched);
+  EXPECT_EQ(matched->refusal, Refusal::none);
+  EXPECT_NEAR(matched->turn_rad, 1.2, 1e-9);
+}
+
+TEST(FrameMatcherTurn, ByTheNotchIsTheFramesOwnOrTheFrameIsRefused) {
+  PoseHistory poses({.period = 16ms});
+  FrameMatcher matcher({.turn = TurnSource::notch});
+  CapturedFrame seen = frame_at(at_ms(20)), unseen = frame_at(at_ms(24));
+  seen.notch_turn_rad = 0.7;
+  (void)matcher.add(seen);
+  (void)matcher.add(unseen);
+  for (const double ms : {16.0, 32.0}) ASSERT_TRUE(poses.push(sample_at(at_ms(ms))));
+  const auto first = matcher.next(at_ms(60), poses), second = matcher.next(at_ms(60), poses);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->refusal, Refusal::none);
+  EXPECT_EQ(first->turn_rad, 0.7);
+  EXPECT_EQ(second->refusal, Refusal::turn_unknown);
+}
+
 }  // namespace
 }  // namespace orcart
