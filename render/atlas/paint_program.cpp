@@ -70,6 +70,10 @@ Result<PaintProgram> PaintProgram::create(const ScopeModel& scope, const Painter
   self.capture_ = at("u_capture");
   self.view_error_ = at("u_view_error");
   self.light_ = at("u_light");
+  self.intrinsics_ = at("u_intrinsics");
+  self.coefficients_ = at("u_coefficients");
+  self.distortion_centre_ = at("u_distortion_centre");
+  self.circle_ = at("u_circle");
   self.picture_ = gles::PictureTexture::uniforms_of(self.program_);
   return self;
 }
@@ -83,14 +87,6 @@ void PaintProgram::set_constants(const ScopeModel& scope, const PainterSettings&
     if constexpr (sizeof...(values) == 4) glUniform4f(at, static_cast<float>(values)...);
   };
   const Lens& lens = scope.lens;
-  set("u_intrinsics", lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px);
-  std::array<float, 5> coefficients{};
-  std::transform(lens.coefficients.begin(), lens.coefficients.end(), coefficients.begin(),
-                 [](double k) { return static_cast<float>(k); });
-  glUniform1fv(gles::uniform(program_, "u_coefficients"), 5, coefficients.data());
-  set("u_distortion_centre", lens.distortion_centre_px.x(), lens.distortion_centre_px.y());
-  const CircularMask& mask = scope.mask;
-  set("u_circle", mask.cx_px, mask.cy_px, mask.radius_px, std::max(mask.soft_edge_px, 1e-3));
   set("u_aspect", lens.fx_px / lens.fy_px);
   set("u_pixel_rad", 1.0 / lens.fx_px);
   set("u_atlas_size", constants.atlas_size_texels);
@@ -106,9 +102,24 @@ void PaintProgram::set_constants(const ScopeModel& scope, const PainterSettings&
                static_cast<float>(scope.fall_off.vignetting_cos_power)};
 }
 
+void PaintProgram::set_optics(const TurnedOptics& optics) const noexcept {
+  const auto narrow = [](double value) { return static_cast<float>(value); };
+  const Lens& lens = optics.lens;
+  glUniform4f(intrinsics_, narrow(lens.fx_px), narrow(lens.fy_px), narrow(lens.cx_px), narrow(lens.cy_px));
+  std::array<float, 5> coefficients{};
+  std::transform(lens.coefficients.begin(), lens.coefficients.end(), coefficients.begin(), narrow);
+  glUniform1fv(coefficients_, 5, coefficients.data());
+  glUniform2f(distortion_centre_, narrow(lens.distortion_centre_px.x()),
+              narrow(lens.distortion_centre_px.y()));
+  const CircularMask& mask = optics.mask;
+  glUniform4f(circle_, narrow(mask.cx_px), narrow(mask.cy_px), narrow(mask.radius_px),
+              narrow(std::max(mask.soft_edge_px, 1e-3)));
+}
+
 void PaintProgram::use(const PaintView& view, const SurfaceTextures& surface,
                        const gles::PictureTexture& picture) const noexcept {
   glUseProgram(program_.id());
+  set_optics(view.optics);
   set_pose_uniforms(rotation_, translation_, view.X_CM);
   glUniform3fv(tip_, 1, view.paper.tip_mm.data());
   glUniform3fv(view_, 1, view.paper.view.data());

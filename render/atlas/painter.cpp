@@ -90,6 +90,7 @@ Result<void> Painter::State::make_programs() {
   view.depth_texture = depth[0].texture();
   view.mask_texture = mask.id();
   view.before_texture = undo[0].before_texture();
+  view.optics = optics_at(scope, 0);
   view.error = {.position_mm = static_cast<float>(scope.residual_mm),
                 .pixels = static_cast<float>(scope.residual_px)};
   return {};
@@ -375,6 +376,10 @@ AtlasRecords Painter::read_records() const {
   glReadPixels(0, 0, records.width_texels, records.height_texels, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT,
                records.texels.data());
   return records;
+}
+
+void Painter::set_turn(double turn_rad) noexcept {
+  state_->view.optics = optics_at(state_->scope, turn_rad);
 }
 
 void Painter::set_view_error(const ViewError& error) noexcept {

@@ -66,6 +66,9 @@ class Painter {
   double coverage() noexcept;
   AtlasPicture read_back() const;
   AtlasRecords read_records() const;
+  /// How far the light post is turned in the next views, since the turn of the passport that was given; 0 at
+  /// first.
+  void set_turn(double turn_rad) noexcept;
   /// What the next views' poses are worth; at first what the passport's residuals say. Allocates nothing.
   void set_view_error(const ViewError& error) noexcept;
 

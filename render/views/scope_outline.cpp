@@ -57,11 +57,10 @@ class Outliner {
 
 }  // namespace
 
-void draw_scope(HudCanvas& canvas, const HudBox& view, const Eye& eye, const ScopeModel& scope,
-                const ScopeOutline& outline) noexcept {
+void draw_scope(HudCanvas& canvas, const HudBox& view, const Eye& eye, const ScopeOutline& outline) noexcept {
   Outliner outliner(canvas, view, eye, outline);
-  const Eigen::Vector3d tip = scope.X_CE.translation_mm;
-  const double reach = std::tan(std::min(scope.cone_half_angle_rad, 1.3)) * kConeMm;
+  const Eigen::Vector3d tip = outline.X_CE.translation_mm;
+  const double reach = std::tan(std::min(outline.cone_half_angle_rad, 1.3)) * kConeMm;
   for (int i = 0; i < kSegments; ++i) {
     const double a = 2 * std::numbers::pi * i / kSegments, b = 2 * std::numbers::pi * (i + 1) / kSegments;
     const Eigen::Vector3d from(reach * std::cos(a), reach * std::sin(a), kConeMm),

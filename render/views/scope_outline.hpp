@@ -1,7 +1,7 @@
 // The scope drawn over the view: its shaft, its viewing cone and a crosshair at the distal window.
 #pragma once
 
-#include "realtime/optics/scope_model.hpp"
+#include "realtime/geometry/pose.hpp"
 #include "render/hud/hud_canvas.hpp"
 #include "render/views/eye.hpp"
 
@@ -9,11 +9,12 @@ namespace orcart {
 
 struct ScopeOutline {
   Pose<M, C> X_MC;
+  Pose<C, E> X_CE;
+  double cone_half_angle_rad = 0;
   bool predicted = false;  ///< dashed: not measured, extrapolated
 };
 
 /// Strokes within `view`, the part of the panel that shows the surface as `eye` sees it.
-void draw_scope(HudCanvas& canvas, const HudBox& view, const Eye& eye, const ScopeModel& scope,
-                const ScopeOutline& outline) noexcept;
+void draw_scope(HudCanvas& canvas, const HudBox& view, const Eye& eye, const ScopeOutline& outline) noexcept;
 
 }  // namespace orcart

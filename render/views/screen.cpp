@@ -11,6 +11,7 @@
 
 #include <GLES2/gl2ext.h>
 
+#include "realtime/optics/scope_turn.hpp"
 #include "render/gles/dma_buf_framebuffers.hpp"
 #include "render/gles/picture_texture.hpp"
 #include "render/hud/status_panel.hpp"
@@ -51,6 +52,7 @@ struct Screen::State {
   gles::Program inset;
   gles::VertexArray no_attributes;
   gles::PictureTexture::Uniforms picture_uniforms{};
+  GLint circle = -1;  ///< of the inset
   Eye drawn_eye;
   std::uint64_t drawn_version = 0, drawn_changes = 0;
   bool drawn = false;
@@ -59,7 +61,7 @@ struct Screen::State {
   Result<void> make_inset();
   void warm_up();
   void redraw(const ScreenState& state, const Painter& painter) noexcept;
-  void draw_inset(const gles::PictureTexture& live) noexcept;
+  void draw_inset(const gles::PictureTexture& live, const CircularMask& mask) noexcept;
   GLuint shared_target(const ImageDescriptor& target) noexcept;
   bool read_into(const ImageDescriptor& target) noexcept;
 };
@@ -75,8 +77,7 @@ Result<void> Screen::State::make_inset() {
               2 * radius, 2 * radius);
   glUniform2f(gles::uniform(inset, "u_panel_size"), static_cast<float>(settings.width_px),
               static_cast<float>(settings.height_px));
-  glUniform4f(gles::uniform(inset, "u_circle"), static_cast<float>(scope.mask.cx_px),
-              static_cast<float>(scope.mask.cy_px), static_cast<float>(scope.mask.radius_px), 0);
+  circle = gles::uniform(inset, "u_circle");
   glUniform1f(gles::uniform(inset, "u_aspect"), static_cast<float>(scope.lens.fx_px / scope.lens.fy_px));
   glUniform1f(gles::uniform(inset, "u_radius_px"), radius);
   picture_uniforms = gles::PictureTexture::uniforms_of(inset);
@@ -126,7 +127,7 @@ void Screen::State::warm_up() {
   glViewport(0, 0, settings.width_px, settings.height_px);
   for (const PixelFormat format : {PixelFormat::yuyv, PixelFormat::nv12, PixelFormat::rgba8888}) {
     live.upload(packed_image(black.data(), format, scope.width_px, scope.height_px));
-    draw_inset(live);
+    draw_inset(live, scope.mask);
   }
   draw_status(canvas[0], layout, {}, InsetContent::blank);
   canvas[0].flush();
@@ -138,10 +139,12 @@ Screen::Screen(Screen&&) noexcept = default;
 Screen& Screen::operator=(Screen&&) noexcept = default;
 Screen::~Screen() = default;
 
-void Screen::State::draw_inset(const gles::PictureTexture& live) noexcept {
+void Screen::State::draw_inset(const gles::PictureTexture& live, const CircularMask& mask) noexcept {
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glUseProgram(inset.id());
+  glUniform4f(circle, static_cast<float>(mask.cx_px), static_cast<float>(mask.cy_px),
+              static_cast<float>(mask.radius_px), 0);
   live.bind(picture_uniforms, 0);
   glBindVertexArray(no_attributes.id());
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
@@ -176,13 +179,17 @@ bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageD
   glBindFramebuffer(GL_FRAMEBUFFER, into);
   HudCanvas& canvas = s.canvas[0];
   draw_grounds(canvas, s.layout);
+  const TurnedOptics optics = optics_at(s.scope, state.turn_rad);
   if (state.X_MC)
-    draw_scope(canvas, s.layout.view, state.eye, s.scope,
-               {.X_MC = *state.X_MC, .predicted = state.scope_predicted});
+    draw_scope(canvas, s.layout.view, state.eye,
+               {.X_MC = *state.X_MC,
+                .X_CE = optics.X_CE,
+                .cone_half_angle_rad = s.scope.cone_half_angle_rad,
+                .predicted = state.scope_predicted});
   canvas.flush();
   const bool live = state.show_live && !painter.picture().empty();
   glViewport(0, 0, s.settings.width_px, s.settings.height_px);
-  if (live) s.draw_inset(painter.picture());
+  if (live) s.draw_inset(painter.picture(), optics.mask);
   draw_status(canvas, s.layout, state.status, live ? InsetContent::picture : InsetContent::blank);
   canvas.flush();
   if (copies) return s.read_into(target);

@@ -30,6 +30,7 @@ struct ScreenState {
   Eye eye;
   std::optional<Pose<M, C>> X_MC;  ///< the scope, where it is known now; its outline is drawn only then
   bool scope_predicted = false;
+  double turn_rad = 0;    ///< of the light post since the passport's turn
   bool show_live = true;  ///< false: the inset is blank and says NO LIVE VIDEO
   std::uint64_t paint_version =
       0;  ///< changes when the atlas changes: the surface is redrawn only then or for a new eye
