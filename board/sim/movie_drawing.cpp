@@ -26,6 +26,8 @@ void add_lens(Fingerprint& print, const ScopeModel& scope) {
         scope.mask.radius_px, scope.fall_off.vignetting_cos_power, scope.cone_half_angle_rad})
     print.add(number);
   for (const double coefficient : lens.coefficients) print.add(coefficient);
+  if (scope.notch_rad) print.add(*scope.notch_rad);
+  if (scope.turning) print.add(scope.turning->centre_px.x()).add(scope.turning->centre_px.y());
 }
 
 std::uint64_t content_of(const MovieRequest& request) {
@@ -93,7 +95,10 @@ std::vector<Pose<M, C>> poses_during(const MovieRequest& request, std::uint64_t 
 void draw_into(const MovieRequest& request, const ScopeCamera& camera, std::uint64_t frame, float gain,
                ScopeCamera::Scratch& scratch, std::span<std::byte> pixels) {
   const auto poses = poses_during(request, frame);
-  camera.draw({.frame = frame + request.world.script().seed * 1'000'003, .poses = poses, .gain = gain},
+  camera.draw({.frame = frame + request.world.script().seed * 1'000'003,
+               .poses = poses,
+               .gain = gain,
+               .turn_rad = request.world.turn_rad(request.world.start() + request.timing.middle_of(frame))},
               scratch,
               packed_image(pixels.data(), request.format, request.scope.width_px, request.scope.height_px));
 }

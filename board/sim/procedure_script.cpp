@@ -13,6 +13,7 @@ std::uint64_t fingerprint(const ProcedureScript& script) {
                               script.rest_s, script.undo_at, script.stream_at, script.hide_at, script.bump_at,
                               script.room_mm, script.widest_pivot_rad, script.sway_rad, script.tremor_mm})
     print.add(number);
+  if (script.turn_rad != 0) print.add(script.turn_rad).add(script.turn_every_s);
   return print.value();
 }
 

@@ -30,10 +30,13 @@ struct ProcedureScript {
   double room_mm = 2.0;         ///< least distance from C to the wall: half a 2.7 mm shaft and a little
   double widest_pivot_rad = 0.28;  ///< inside: how far the shaft may lean about the burr hole
   double sway_rad = 0.35;          ///< slow rotation about the shaft, to each side
+  double turn_rad = 0;             ///< an angled scope's light post is turned to and fro, so far to each side
+  double turn_every_s = 8;         ///< once to and fro, evenly, from no turn on
+  double hide_second_at = -1;      ///< the tracker does not see the second marker for 1.1 s
   double tremor_mm = 0.03;         ///< of the hand, about 9 Hz; its slow drift is five times as large
 };
 
-/// A hash of everything above: two scripts with the same one are the same.
+/// A hash of everything above that can be seen in the pictures: two scripts with the same one look the same.
 std::uint64_t fingerprint(const ProcedureScript& script);
 
 }  // namespace orcart

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "board/sim/baked_tissue.hpp"
 #include "board/sim/sensor.hpp"
 #include "board/sim/surface_normals.hpp"
+#include "realtime/optics/scope_turn.hpp"
 
 namespace orcart {
 namespace {
@@ -18,13 +20,9 @@ constexpr float kRimSoftness_px = 2.5F;   ///< the picture's own edge, centred o
 constexpr int kCoarse = 97;               ///< fitting_gain looks at every 97th pixel
 constexpr float kMeanWanted = 0.20F, kBrightWanted = 0.75F, kHighestGain = 12;
 
-/// One pixel that can see something.
-struct Pixel {
-  std::uint32_t index = 0;  ///< row * width + column
-  Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();
-  float weight = 1;  ///< 0 at the rim's outside
-  float vignetting = 1;
-};
+/// A black tooth that points inward from the rim, where the passport has a notch.
+constexpr double kNotchDepth = 0.09, kNotchHalfWidth_rad = 0.05;
+constexpr float kNotchSoftness_px = 1.2F;
 
 /// What falls on a point at gain 1: a factor on the reflectance, and what is mirrored.
 struct Illumination {
@@ -37,20 +35,40 @@ float smooth_step(float from, float to, float x) {
   return t * t * (3 - 2 * t);
 }
 
+/// 0 within the notch. `radius` and angle about the mask's centre, square pixels.
+float beside_notch(const ScopeModel& scope, double radius_px, double angle_rad) {
+  if (!scope.notch_rad) return 1;
+  const double depth = (radius_px / scope.mask.radius_px - (1 - kNotchDepth)) / kNotchDepth;
+  const double along = std::abs(std::remainder(angle_rad - *scope.notch_rad, 2 * std::numbers::pi));
+  const double off_px = (along - kNotchHalfWidth_rad * std::max(depth, -1.0)) * radius_px;
+  return smooth_step(-kNotchSoftness_px, kNotchSoftness_px, static_cast<float>(off_px));
+}
+
 /// The pixel as the mask and the lens have it; nothing where it stays black.
-std::optional<Pixel> pixel_at(const ScopeModel& scope, int x, int y) {
+std::optional<ScopePixel> pixel_at(const ScopeModel& scope, int x, int y) {
   const double aspect = scope.lens.fy_px / scope.lens.fx_px;
-  const double radius = std::hypot(x - scope.mask.cx_px, (y - scope.mask.cy_px) / aspect);
+  const Eigen::Vector2d off(x - scope.mask.cx_px, (y - scope.mask.cy_px) / aspect);
+  const double radius = off.norm();
   const auto beyond = static_cast<float>(radius - scope.mask.radius_px);
   if (beyond > kRimSoftness_px) return std::nullopt;
   const auto direction = direction_of(scope.lens, {static_cast<double>(x), static_cast<double>(y)});
   if (!direction) return std::nullopt;
   const float rim = smooth_step(0.80F, 1.03F, static_cast<float>(radius / scope.mask.radius_px));
   const double off_axis = std::pow(std::max(direction->z(), 0.05), scope.fall_off.vignetting_cos_power);
-  return Pixel{.index = static_cast<std::uint32_t>(y * scope.width_px + x),
-               .direction = direction->cast<float>(),
-               .weight = 1 - smooth_step(-kRimSoftness_px, kRimSoftness_px, beyond),
-               .vignetting = static_cast<float>(off_axis) * (1 - 0.45F * rim)};
+  return ScopePixel{.index = static_cast<std::uint32_t>(y * scope.width_px + x),
+                    .direction = direction->cast<float>(),
+                    .weight = (1 - smooth_step(-kRimSoftness_px, kRimSoftness_px, beyond)) *
+                              beside_notch(scope, radius, std::atan2(off.y(), off.x())),
+                    .vignetting = static_cast<float>(off_axis) * (1 - 0.45F * rim)};
+}
+
+std::vector<ScopePixel> pixels_of(ScopeModel scope, bool coded) {
+  if (coded) scope.notch_rad.reset();  // the code is what the surface shows, all of it
+  std::vector<ScopePixel> pixels;
+  for (int y = 0; y < scope.height_px; ++y)
+    for (int x = 0; x < scope.width_px; ++x)
+      if (const auto pixel = pixel_at(scope, x, y)) pixels.push_back(*pixel);
+  return pixels;
 }
 
 }  // namespace
@@ -61,7 +79,7 @@ struct ScopeCamera::State {
   ScopeModel scope;
   SceneLook look;
   std::vector<Eigen::Vector3f> normals;
-  std::vector<Pixel> pixels;
+  std::vector<ScopePixel> pixels;      ///< at the passport's turn
   std::unique_ptr<BakedTissue> baked;  ///< null for coded tissue
 
   bool coded() const { return std::holds_alternative<CodedTissue>(look.tissue); }
@@ -70,8 +88,10 @@ struct ScopeCamera::State {
   Illumination illumination(const RayHit& hit, const Eigen::Vector3f& direction) const;
   Eigen::Vector3f reflectance(const RayHit& hit, const Pose<M, C>& X_MC,
                               const Eigen::Vector3f& direction) const;
-  void light_up(Scratch& scratch, float gain) const;
-  void trace(const Pose<M, C>& X_MC, std::size_t every, Scratch& scratch) const;
+  const std::vector<ScopePixel>& pixels_at(double turn_rad, Scratch& scratch) const;
+  void light_up(const std::vector<ScopePixel>& seen, Scratch& scratch, float gain) const;
+  void trace(const std::vector<ScopePixel>& seen, const Pose<M, C>& X_MC, std::size_t every,
+             Scratch& scratch) const;
 };
 
 Eigen::Vector3f ScopeCamera::State::normal_at(const RayHit& hit) const {
@@ -108,21 +128,32 @@ Eigen::Vector3f ScopeCamera::State::reflectance(const RayHit& hit, const Pose<M,
 
 /// Multiplies what the pixels show by the light that falls there; `scratch` holds the rays of the middle
 /// pose. Light changes so slowly that one pose stands for the exposure; only what it falls on is blurred.
-void ScopeCamera::State::light_up(Scratch& scratch, float gain) const {
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
+void ScopeCamera::State::light_up(const std::vector<ScopePixel>& seen, Scratch& scratch, float gain) const {
+  for (std::size_t i = 0; i < seen.size(); ++i) {
     if (scratch.hits[i].distance_mm < 0) continue;
     const Illumination light = illumination(scratch.hits[i], scratch.directions[i]);
-    Eigen::Vector3f& shown = scratch.light[pixels[i].index];
-    shown = gain * pixels[i].vignetting * (shown.array() * light.diffuse + pixels[i].weight * light.specular);
+    Eigen::Vector3f& shown = scratch.light[seen[i].index];
+    shown = gain * seen[i].vignetting * (shown.array() * light.diffuse + seen[i].weight * light.specular);
   }
 }
 
-/// Fills scratch.hits with what every `every`-th pixel sees.
-void ScopeCamera::State::trace(const Pose<M, C>& X_MC, std::size_t every, Scratch& scratch) const {
+/// A turned scope's own are worked out anew for each turn: slow, and drawing is not in a hurry.
+const std::vector<ScopePixel>& ScopeCamera::State::pixels_at(double turn_rad, Scratch& scratch) const {
+  if (turn_rad == 0) return pixels;
+  if (scratch.pixels.empty() || scratch.turn_rad != turn_rad) {
+    scratch.pixels = pixels_of(turned(scope, turn_rad), coded());
+    scratch.turn_rad = turn_rad;
+  }
+  return scratch.pixels;
+}
+
+/// Fills scratch.hits with what every `every`-th of the pixels sees.
+void ScopeCamera::State::trace(const std::vector<ScopePixel>& seen, const Pose<M, C>& X_MC, std::size_t every,
+                               Scratch& scratch) const {
   const Eigen::Matrix3f rotation = X_MC.rotation.cast<float>();
   scratch.directions.clear();
-  for (std::size_t i = 0; i < pixels.size(); i += every)
-    scratch.directions.emplace_back(rotation * pixels[i].direction);
+  for (std::size_t i = 0; i < seen.size(); i += every)
+    scratch.directions.emplace_back(rotation * seen[i].direction);
   scratch.hits.resize(scratch.directions.size());
   rays.nearest_many(X_MC.translation_mm.cast<float>(), scratch.directions, kFar_mm, scratch.hits);
 }
@@ -134,11 +165,8 @@ ScopeCamera::ScopeCamera(const TriangleMesh& mesh, const RayScene& rays, const S
                        .scope = scope,
                        .look = look,
                        .normals = vertex_normals(mesh),
-                       .pixels = {},
+                       .pixels = pixels_of(scope, std::holds_alternative<CodedTissue>(look.tissue)),
                        .baked = nullptr}) {
-  for (int y = 0; y < scope.height_px; ++y)
-    for (int x = 0; x < scope.width_px; ++x)
-      if (const auto pixel = pixel_at(scope, x, y)) state_->pixels.push_back(*pixel);
   if (const auto* living = std::get_if<LivingTissue>(&look.tissue))
     state_->baked = std::make_unique<BakedTissue>(mesh, *living, look.texel_mm);
 }
@@ -155,15 +183,16 @@ const ScopeModel& ScopeCamera::scope() const noexcept {
 void ScopeCamera::draw(const Exposure& exposure, Scratch& scratch, const ImageDescriptor& image) const {
   const State& s = *state_;
   scratch.light.assign(static_cast<std::size_t>(image.width_px * image.height_px), Eigen::Vector3f::Zero());
+  const std::vector<ScopePixel>& seen = s.pixels_at(exposure.turn_rad, scratch);
   const std::size_t count = exposure.poses.size(), middle = count / 2;
   for (std::size_t i = 0; i < count; ++i) {
     const Pose<M, C>& X_MC = exposure.poses[(middle + 1 + i) % count];  // the middle one last: its rays stay
-    s.trace(X_MC, 1, scratch);
-    for (std::size_t p = 0; p < s.pixels.size(); ++p)
-      scratch.light[s.pixels[p].index] += s.pixels[p].weight / static_cast<float>(count) *
-                                          s.reflectance(scratch.hits[p], X_MC, scratch.directions[p]);
+    s.trace(seen, X_MC, 1, scratch);
+    for (std::size_t p = 0; p < seen.size(); ++p)
+      scratch.light[seen[p].index] += seen[p].weight / static_cast<float>(count) *
+                                      s.reflectance(scratch.hits[p], X_MC, scratch.directions[p]);
   }
-  if (s.lit()) s.light_up(scratch, exposure.gain);
+  if (s.lit()) s.light_up(seen, scratch, exposure.gain);
   if (!s.coded()) {
     if (s.look.noise == Effect::on) add_sensor_noise(scratch.light, exposure.frame);
     for (Eigen::Vector3f& light : scratch.light) light = light.unaryExpr(&displayed);
@@ -174,7 +203,7 @@ void ScopeCamera::draw(const Exposure& exposure, Scratch& scratch, const ImageDe
 float ScopeCamera::fitting_gain(const Pose<M, C>& X_MC, Scratch& scratch) const {
   const State& s = *state_;
   if (!s.lit()) return 1;
-  s.trace(X_MC, kCoarse, scratch);
+  s.trace(s.pixels, X_MC, kCoarse, scratch);
   std::vector<float> brightness;
   for (std::size_t i = 0; i < scratch.hits.size(); ++i) {
     if (scratch.hits[i].distance_mm < 0) continue;

@@ -26,6 +26,14 @@ struct SceneLook {
   float texel_mm = 0.065F;       ///< how finely living tissue is sampled on the surface; finer takes longer
 };
 
+/// One pixel that can see something.
+struct ScopePixel {
+  std::uint32_t index = 0;  ///< row * width + column
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitZ();
+  float weight = 1;  ///< 0 at the rim's outside, and in the notch
+  float vignetting = 1;
+};
+
 /// Built before the run; draw() may run on any number of threads, each with a Scratch of its own. The
 /// surface's mesh and ray scene are borrowed.
 class ScopeCamera {
@@ -34,16 +42,20 @@ class ScopeCamera {
   ~ScopeCamera();
   ScopeCamera(ScopeCamera&&) noexcept;
 
-  /// One thread's working memory.
+  /// One thread's working memory for one camera.
   struct Scratch {
     std::vector<Eigen::Vector3f> directions, light;
     std::vector<RayHit> hits;
+    double turn_rad = 0;  ///< that `pixels` are for
+    std::vector<ScopePixel> pixels;
   };
 
   struct Exposure {
     std::uint64_t frame = 0;            ///< seeds the noise
     std::span<const Pose<M, C>> poses;  ///< spread evenly over the exposure; one where there is no blur
     float gain = 1;
+    double turn_rad =
+        0;  ///< of the light post since the scope's passport; lens, circle and notch go round with it
   };
 
   /// Draws into `image` (scope's size; yuyv or nv12, CPU planes).

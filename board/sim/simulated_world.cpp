@@ -42,7 +42,7 @@ Result<SimulatedWorld> SimulatedWorld::create(const PlanRequest& request) {
 }
 
 SimulatedWorld::SimulatedWorld(ScopeMotion motion, const PlanRequest& request)
-    : motion_(std::move(motion)), script_(request.script), X_SC_(request.scope.X_SC) {
+    : motion_(std::move(motion)), script_(request.script), scope_(request.scope) {
   // The reference is clamped to the head about 12 cm from the field; the position sensor stands 1.5 m away.
   X_MR_ = {.rotation = turned(script_.seed, 1, std::numbers::pi),
            .translation_mm = motion_.way().places.front().at_mm + Eigen::Vector3d(70, 60, 75)};
@@ -53,6 +53,10 @@ SimulatedWorld::SimulatedWorld(ScopeMotion motion, const PlanRequest& request)
   if (script_.hide_at >= 0) {
     const Nanos from = motion_.arrival(place_at(script_.hide_at)) + from_seconds(script_.rest_s);
     hidden_.push_back({.from = from, .until = from + kHidden});
+  }
+  if (script_.hide_second_at >= 0) {
+    const Nanos from = from_seconds(script_.hide_second_at * script_.duration_s);
+    second_hidden_.push_back({.from = from, .until = from + kHidden});
   }
 }
 
@@ -73,12 +77,31 @@ Pose<T, R> SimulatedWorld::X_TR(Instant at) const noexcept {
   return X;
 }
 
+double SimulatedWorld::turn_rad(Instant at) const noexcept {
+  if (!scope_.turning || script_.turn_rad == 0) return 0;
+  const double turns = seconds(at - start_) / script_.turn_every_s;
+  return script_.turn_rad * (1 - 4 * std::abs(turns + 0.25 - std::floor(turns + 0.25) - 0.5));
+}
+
+Pose<T, S> SimulatedWorld::X_TS(Instant at) const noexcept {
+  return X_TR(at) * X_MR_.inverse() * X_MC(at) * optics_at(scope_, turn_rad(at)).X_SC.inverse();
+}
+
+bool SimulatedWorld::seen(const std::vector<Stretch>& hidden, Instant at) const noexcept {
+  return std::ranges::none_of(hidden, [&](const Stretch& gap) { return gap.holds(at - start_); });
+}
+
+// The second marker stands 40 mm beside the first, on the other side of the coupler.
 TrueToolPose SimulatedWorld::pose_of(int tool, Instant at) const noexcept {
-  const Pose<T, R> X_TR = this->X_TR(at);
-  if (tool != kScopeTool) return as_tool(X_TR.rotation, X_TR.translation_mm, tool == kReferenceTool);
-  const Pose<T, S> X_TS = X_TR * X_MR_.inverse() * X_MC(at) * X_SC_.inverse();
-  const bool seen = std::ranges::none_of(hidden_, [&](const Stretch& gap) { return gap.holds(at - start_); });
-  return as_tool(X_TS.rotation, X_TS.translation_mm, seen);
+  if (tool == kReferenceTool) return as_tool(X_TR(at).rotation, X_TR(at).translation_mm, true);
+  const Pose<T, S> X_TS = this->X_TS(at);
+  if (tool == kScopeTool) return as_tool(X_TS.rotation, X_TS.translation_mm, seen(hidden_, at));
+  if (tool != kSecondTool || !scope_.turning || !scope_.turning->R_SL)
+    return as_tool(X_TS.rotation, X_TS.translation_mm, false);
+  const Pose<S, L> X_SL{.rotation = second_marker_at(*scope_.turning, turn_rad(at)),
+                        .translation_mm = {40, 0, 0}};
+  const Pose<T, L> X_TL = X_TS * X_SL;
+  return as_tool(X_TL.rotation, X_TL.translation_mm, seen(second_hidden_, at));
 }
 
 std::vector<PedalEdge> SimulatedWorld::pedal_edges() const {
