@@ -69,6 +69,7 @@ struct Cart::State {
   std::unique_ptr<PedalStage> pedal;
   std::unique_ptr<TrackerStage> tracker;
   std::unique_ptr<TrackerWake> tracker_wake;
+  std::unique_ptr<NotchSearch> notch;  ///< null where the turn is not followed by it
   std::unique_ptr<CameraStage> camera;
   std::unique_ptr<SyncStage> sync;
   std::unique_ptr<MapperStage> mapping;
@@ -149,23 +150,25 @@ void Cart::State::build_stages() {
                        .device_latency = from_seconds(config.tracker.latency_ms * 1e-3)},
       lanes);
   tracker_wake = std::make_unique<TrackerWake>(setup.ports.tracker, *driver);
+  if (config.turn == TurnSource::notch) notch = std::make_unique<NotchSearch>(patient.scope);
   camera = std::make_unique<CameraStage>(
       setup.ports.camera, setup.clock,
       StampSettings{.meaning = config.camera.stamp,
                     .exposure = from_seconds(config.camera.exposure_ms * 1e-3),
                     .after_exposure = from_seconds(config.camera.after_exposure_ms * 1e-3)},
-      lanes);
+      lanes, notch.get());
   sync = std::make_unique<SyncStage>(
-      SyncStageSettings{.history = {.period = tracker_period},
-                        .matcher = {.tracker_against_video = config.tracker_against_video},
-                        .selector = {},
-                        .X_MR = patient.registration.X_MR,
-                        .X_SC = patient.scope.X_SC,
-                        .painting_blocked = !patient.painting_blocked.empty()},
+      SyncStageSettings{
+          .history = {.period = tracker_period, .needs_turn = config.turn == TurnSource::marker},
+          .matcher = {.turn = config.turn, .tracker_against_video = config.tracker_against_video},
+          .selector = {},
+          .X_MR = patient.registration.X_MR,
+          .scope = patient.scope,
+          .painting_blocked = !patient.painting_blocked.empty()},
       lanes);
   mapping = std::make_unique<MapperStage>(
       *mapper, patches, setup.clock,
-      MapperStageSettings{.mode = config.mode, .X_MR = patient.registration.X_MR, .X_SC = patient.scope.X_SC},
+      MapperStageSettings{.mode = config.mode, .X_MR = patient.registration.X_MR, .scope = patient.scope},
       lanes);
   painting =
       std::make_unique<PainterStage>(PainterStage::Parts{.painter = *painter,
@@ -192,6 +195,7 @@ void Cart::State::build_stages() {
           .simulated = config.simulated(),
           .software_rendering = context.render_class() == RenderClass::software,
           .degraded = !lacks.empty(),
+          .turn = config.turn,
           .painting_blocked = patient.painting_blocked,
           .submit_deadline = budget.dequeue_to_submitted.bound,
           .freshness = {.tracker_period = tracker_period, .video_period = period_of(config.camera.rate_hz)}});

@@ -22,14 +22,31 @@ void read_files(TomlReader& reader, CartConfig& config) {
     config.passport.medium = scope.choice_of<Medium>(
         "medium", {{"air", Medium::air}, {"water", Medium::water}, {"saline", Medium::saline}});
   if (scope.has("serial")) config.passport.serial = scope.text("serial");
-  if (scope.has("turn_deg"))
+  config.turn = scope.choice_of<TurnSource>(
+      "turn", {{"told", TurnSource::told}, {"marker", TurnSource::marker}, {"notch", TurnSource::notch}},
+      TurnSource::told);
+  if (scope.has("turn_deg")) {
     config.turn_rad = scope.number("turn_deg", {.min = -360, .max = 360}) * std::numbers::pi / 180;
+    if (config.turn != TurnSource::told)
+      scope.refuse("turn_deg",
+                   "stands beside turn = \"marker\" or \"notch\"; a turn is either told or followed");
+  }
   config.passport.most_residual_px =
       scope.number("most_residual_px", {.min = 0.01, .max = 50, .fallback = 1.0});
   config.passport.most_residual_mm =
       scope.number("most_residual_mm", {.min = 0.01, .max = 50, .fallback = 2.0});
   const TomlSection registration = reader.section("registration");
   config.registration = registration.path("file");
+}
+
+/// The turn is followed by a second marker exactly where there is one.
+void check_second_marker(const TomlSection& section, const CartConfig& config) {
+  const bool there = section.has("second_rom") || section.has("second_port");
+  if (there == (config.turn == TurnSource::marker)) return;
+  section.refuse(section.has("second_port") ? "second_port" : "second_rom",
+                 there
+                     ? "names a marker that nobody asks: [scope] turn is not \"marker\""
+                     : "is missing: [scope] turn = \"marker\" wants the second marker's definition or port");
 }
 
 void read_painting(const TomlSection& section, CartConfig& config) {
@@ -52,6 +69,9 @@ void read_simulation(const TomlSection& section, SimulationConfig& simulation) {
   simulation.duration_s = section.number("duration_s", {.min = 2, .max = 3600, .fallback = 30});
   simulation.marker_noise_mm = section.number("marker_noise_mm", {.min = 0, .max = 2, .fallback = 0.05});
   simulation.picture_noise = section.flag("picture_noise", true);
+  simulation.turn_rad =
+      section.number("turn_deg", {.min = 0, .max = 180, .fallback = 0.0}) * std::numbers::pi / 180;
+  simulation.turn_every_s = section.number("turn_every_s", {.min = 1, .max = 3600, .fallback = 8.0});
   simulation.movie = section.path("movie", std::filesystem::path{});
   simulation.entry_direction = section.numbers("entry_direction", 3, simulation.entry_direction);
 }
@@ -66,6 +86,7 @@ Result<CartConfig> read_cart(const std::filesystem::path& file) {
   config.file = file;
   read_files(reader, config);
   read_tracker(reader.section("tracker"), config.tracker);
+  check_second_marker(reader.section("tracker"), config);
   read_camera(reader.section("camera"), config.camera);
   read_pedal(reader.section("pedal"), config.pedal);
   read_panel(reader.section("panel"), config.panel);

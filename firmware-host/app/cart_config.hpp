@@ -14,6 +14,7 @@
 #include "realtime/base/result.hpp"
 #include "realtime/geometry/triangle_mesh.hpp"
 #include "realtime/mapper/cutout_patch.hpp"
+#include "realtime/sync/notch_turn.hpp"
 #include "render/atlas/colouring.hpp"
 #include "render/atlas/paint_settings.hpp"
 
@@ -26,6 +27,8 @@ struct SimulationConfig {
   bool picture_noise = true;                               ///< sensor noise, motion blur, specular highlights
   std::filesystem::path movie;                             ///< where the drawn pictures are kept between runs
   std::vector<double> entry_direction = {0.4, -0.6, 0.7};  ///< from the surface's centre to the burr hole, M
+  double turn_rad = 0;      ///< how far the light post is turned to and fro, to each side
+  double turn_every_s = 8;  ///< once to and fro
 };
 
 struct CartConfig {
@@ -33,7 +36,8 @@ struct CartConfig {
   std::string name = "cart";
   std::filesystem::path surface, scope, registration;
   PassportWish passport;
-  std::optional<double> turn_rad;  ///< of the light post since the passport was made; nothing: not said
+  TurnSource turn = TurnSource::told;
+  std::optional<double> turn_rad;  ///< told: of the light post since the passport was made; nothing: not said
   SeenFrom seen_from = SeenFrom::outside;
   double texel_mm = 0.2;
   TextureMode mode = TextureMode::perspective;

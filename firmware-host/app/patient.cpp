@@ -7,9 +7,26 @@
 namespace orcart {
 namespace {
 
+/// What a passport must hold for its scope to be followed.
+Result<void> check_followed(const CartConfig& config, const ScopeModel& scope) {
+  const bool by_marker = config.turn == TurnSource::marker;
+  const std::string place = config.scope.string() + ": the passport ";
+  const std::string wanted = std::string("[scope] turn = \"") + (by_marker ? "marker" : "notch") + "\" needs";
+  if (!scope.turning)
+    return fail(place + "has no [turning], which " + wanted + "; run orcart calibrate turn");
+  if (by_marker && !scope.turning->R_SL)
+    return fail(place + "has no [turning] R_SL, the second marker's place at turn 0, which " + wanted +
+                "; run orcart calibrate turn with --second-poses");
+  if (!by_marker && !scope.notch_rad)
+    return fail(place + "has no [mask] notch_rad, which " + wanted +
+                "; run orcart calibrate turn on pictures that show the notch");
+  return {};
+}
+
 /// Puts the passport at the turn that was said. A scope that turns and of which nobody said how far is shown,
-/// not painted with.
+/// not painted with. One that is followed stays as it was calibrated.
 Result<void> turn_scope(const CartConfig& config, Patient& patient) {
+  if (config.turn != TurnSource::told) return check_followed(config, patient.scope);
   if (!patient.scope.turning) {
     if (!config.turn_rad) return {};
     return fail(

@@ -15,7 +15,7 @@ namespace orcart {
 /// The patient's surface with its atlas, the scope's passport, the registration. Immutable once read.
 struct Patient {
   Surface surface;
-  ScopeModel scope;  ///< at the turn that was said
+  ScopeModel scope;  ///< at the turn that was said; where it is followed, at the passport's own
   RegistrationFile registration;
   AtlasLayout layout;
   std::string painting_blocked;    ///< why nothing may be painted; empty where it may
@@ -24,7 +24,8 @@ struct Patient {
 
 /// Refuses a registration that belongs to another surface, and a passport that does not fit the camera's size
 /// or the scope, has expired or is beyond its limits. Another medium, and a scope that turns
-/// and of which nobody said how far, block painting alone.
+/// and of which nobody said how far, block painting alone. A scope that is to be
+/// followed by what its passport does not hold is refused.
 Result<Patient> read_patient(const CartConfig& config);
 
 }  // namespace orcart

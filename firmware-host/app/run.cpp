@@ -128,7 +128,10 @@ std::vector<JudgedView> views_of(const Cart& cart, const SimulatedWorld& world, 
   for (std::size_t i = 0; i < cart.captures().size() && views.size() < most; ++i) {
     const CaptureRecord& c = cart.captures().at(i);
     if (c.refusal == Refusal::none && !c.streaming)
-      views.push_back({.believed = c.X_MC, .true_pose = world.X_MC(c.mid_exposure)});
+      views.push_back({.believed = c.X_MC,
+                       .true_pose = world.X_MC(c.mid_exposure),
+                       .believed_turn_rad = c.turn_rad,
+                       .true_turn_rad = world.turn_rad(c.mid_exposure)});
   }
   return views;
 }
@@ -150,7 +153,10 @@ Result<void> judge_painting(RunReport& report, const Patient& patient, const Car
   for (const Case& one : cases) {
     std::vector<JudgedView> judged = views;
     if (one.exact) {
-      for (JudgedView& view : judged) view.believed = view.true_pose;
+      for (JudgedView& view : judged) {
+        view.believed = view.true_pose;
+        view.believed_turn_rad = view.true_turn_rad;
+      }
     }
     auto error = check_painting(
         patient, judged,
@@ -261,7 +267,10 @@ ExitCode run(const Options& options) {
   if (!config) return complain(config.error(), ExitCode::configuration);
   if (options.run_for) config->simulation.duration_s = seconds(*options.run_for);
   if (options.medium) config->passport.medium = options.medium;
-  if (options.turn_rad) config->turn_rad = options.turn_rad;
+  if (options.turn_rad) {
+    config->turn = TurnSource::told;
+    config->turn_rad = options.turn_rad;
+  }
   auto patient = read_patient(*config);
   if (!patient) return complain(patient.error(), ExitCode::configuration);
   for (const std::string& note : patient->notes) std::fprintf(stderr, "%s\n", note.c_str());

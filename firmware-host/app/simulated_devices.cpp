@@ -128,6 +128,8 @@ Result<std::unique_ptr<SimulatedDevices>> SimulatedDevices::create(const Request
   script.seed = simulation.seed;
   script.duration_s = simulation.duration_s;
   script.seen_from = config.seen_from;
+  script.turn_rad = simulation.turn_rad;
+  script.turn_every_s = simulation.turn_every_s;
   script.entry_direction = {simulation.entry_direction[0], simulation.entry_direction[1],
                             simulation.entry_direction[2]};
   auto world = SimulatedWorld::create(

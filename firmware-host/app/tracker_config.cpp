@@ -73,6 +73,8 @@ void read_tracker(const TomlSection& section, TrackerConfig& tracker) {
   tracker.latency_ms = section.number("latency_ms", {.min = 0, .max = 100, .fallback = 0.0});
   read_tool(section, "scope", tracker.scope_rom, tracker.scope_port);
   read_tool(section, "reference", tracker.reference_rom, tracker.reference_port);
+  tracker.second = section.has("second_rom") || section.has("second_port");
+  if (tracker.second) read_tool(section, "second", tracker.second_rom, tracker.second_port);
   tracker.poll = section.choice_of<PollForm>(
       "poll",
       {{"auto", PollForm::automatic}, {"tx", PollForm::tx}, {"bx", PollForm::bx}, {"bx2", PollForm::bx2}},
@@ -92,8 +94,10 @@ Result<NdiSettings> settings_of(const TrackerConfig& tracker) {
                        .flow = tracker.flow,
                        .beeps_when_tracking = tracker.beeps,
                        .max_error_mm = tracker.max_error_mm};
-  for (const auto& [file, port] : {std::pair{tracker.scope_rom, tracker.scope_port},
-                                   std::pair{tracker.reference_rom, tracker.reference_port}}) {
+  std::vector<std::pair<std::filesystem::path, TrackedTool::Port>> tools{
+      {tracker.scope_rom, tracker.scope_port}, {tracker.reference_rom, tracker.reference_port}};
+  if (tracker.second) tools.emplace_back(tracker.second_rom, tracker.second_port);
+  for (const auto& [file, port] : tools) {
     if (file.empty()) {
       settings.tools.emplace_back(port);
       continue;

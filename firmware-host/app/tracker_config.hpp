@@ -27,6 +27,10 @@ struct TrackerConfig {
   double latency_ms = 0;  ///< from the device frame to its reply being ready, taken off every stamp
   std::filesystem::path scope_rom, reference_rom;  ///< empty for a wired tool
   TrackedTool::Port scope_port, reference_port;    ///< where the wired one is plugged in
+  /// The marker on the other side of a turning scope's coupler, where there is one.
+  bool second = false;
+  std::filesystem::path second_rom;
+  TrackedTool::Port second_port;
   PollForm poll = PollForm::automatic;
   int beeps = 0;  ///< when all tools are tracked
   double marker_rms_mm =
@@ -45,7 +49,7 @@ struct TrackerConfig {
 void read_tracker(const TomlSection& section, TrackerConfig& tracker);
 
 /// What the driver is to be told: tool definitions read and checked; tool 0 is the scope, tool 1 the
-/// reference.
+/// reference, tool 2 the second marker where there is one.
 Result<NdiSettings> settings_of(const TrackerConfig& tracker);
 
 }  // namespace orcart

@@ -9,6 +9,7 @@
 
 #include "board/sim/scope_camera.hpp"
 #include "firmware-host/offline/offline_painter.hpp"
+#include "realtime/optics/scope_turn.hpp"
 
 namespace orcart {
 namespace {
@@ -85,12 +86,13 @@ class TruthChecker {
     const SceneLook look{.tissue = CodedTissue{.axis = axis,
                                                .period_mm = kPeriodMm,
                                                .phase_rad = 2 * std::numbers::pi * phase / kPhases}};
-    const ScopeCamera camera(patient_.surface.mesh, rays_, patient_.scope, look);
+    const ScopeModel scope = turned(patient_.scope, view.true_turn_rad);
+    const ScopeCamera camera(patient_.surface.mesh, rays_, scope, look);
     const ImageDescriptor image =
         packed_image(pixels_.data(), format_, patient_.scope.width_px, patient_.scope.height_px);
     camera.draw({.poses = {&view.true_pose, 1}}, scratch_, image);
     painter_.painter().clear();
-    auto painted = painter_.paint(image, view.believed);
+    auto painted = painter_.paint(image, view.believed, view.believed_turn_rad);
     if (!painted) return tl::unexpected(painted.error());
     const AtlasPicture atlas = painter_.painter().read_back();
     for (std::size_t i = 0; i < greys_.size(); ++i) {

@@ -15,6 +15,7 @@ namespace orcart {
 struct JudgedView {
   Pose<M, C> believed;
   Pose<M, C> true_pose;
+  double believed_turn_rad = 0, true_turn_rad = 0;  ///< of the light post since the patient's scope
 };
 
 struct TruthCheckRequest {

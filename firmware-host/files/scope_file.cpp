@@ -93,6 +93,19 @@ void read_rest(TomlReader& reader, ScopeModel& scope) {
   scope.hand_eye_covariance = read_twist_covariance(covariance, "hand_eye");
 }
 
+/// Row by row.
+Eigen::Matrix3d read_second_marker(const TomlSection& section) {
+  constexpr double kLargestDeviation = 0.01;
+  const auto numbers = section.numbers("R_SL", 9);
+  if (numbers.size() != 9) return Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d given;
+  for (Eigen::Index i = 0; i < 9; ++i) given(i / 3, i % 3) = numbers[static_cast<std::size_t>(i)];
+  const NearestRotation nearest = nearest_rotation(given);
+  if (nearest.reflected || !(nearest.deviation <= kLargestDeviation))
+    section.refuse("R_SL", "is no rotation; nine numbers, row by row, are accepted");
+  return nearest.rotation;
+}
+
 void read_turning(const TomlSection& section, ScopeModel& scope) {
   if (!section.present()) return;
   Turning turning;
@@ -103,10 +116,15 @@ void read_turning(const TomlSection& section, ScopeModel& scope) {
       section.number("centre_deviation_px", {.min = 0, .max = 100, .fallback = 0.0});
   turning.marker =
       section.choice_of<TurnMarker>("marker", {{"shaft", TurnMarker::shaft}, {"head", TurnMarker::head}});
-  if (turning.marker == TurnMarker::head) {
-    const auto axis = section.numbers("axis", 3), point = section.numbers("axis_point_mm", 3);
-    if (axis.size() == 3) turning.axis = {axis[0], axis[1], axis[2]};
+  const bool on_head = turning.marker == TurnMarker::head, second = section.has("R_SL");
+  if (second) turning.R_SL = read_second_marker(section);
+  if (on_head) {
+    const auto point = section.numbers("axis_point_mm", 3);
     if (point.size() == 3) turning.axis_point_mm = {point[0], point[1], point[2]};
+  }
+  if (on_head || second) {
+    const auto axis = section.numbers("axis", 3);
+    if (axis.size() == 3) turning.axis = {axis[0], axis[1], axis[2]};
     if (std::abs(turning.axis.norm() - 1) > 0.01)
       section.refuse("axis", "is not of length 1; a direction in the marker's axes is accepted");
     turning.axis.normalize();

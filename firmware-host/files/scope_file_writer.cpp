@@ -89,8 +89,12 @@ std::string turning_text(const Turning& turning) {
                     list("centre_px", turning.centre_px.data(), 2) +
                     line("centre_deviation_px", turning.centre_deviation_px) +
                     line("marker", std::string_view(on_head ? "head" : "shaft"));
-  if (on_head)
-    out += list("axis", turning.axis.data(), 3) + list("axis_point_mm", turning.axis_point_mm.data(), 3);
+  if (on_head || turning.R_SL) out += list("axis", turning.axis.data(), 3);
+  if (on_head) out += list("axis_point_mm", turning.axis_point_mm.data(), 3);
+  if (turning.R_SL) {
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = *turning.R_SL;
+    out += list("R_SL", rows.data(), 9);
+  }
   return out;
 }
 

@@ -1,6 +1,7 @@
 // Reads views.csv line by line; every refusal names its line.
 #include "firmware-host/files/views_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -14,7 +15,8 @@ namespace {
 
 constexpr std::uintmax_t kLargestFileBytes = 64U << 20U;
 constexpr std::size_t kFields = 13;
-constexpr const char* kAccepted = "image,m00,m01,...,m23 (a name and 12 numbers) is accepted";
+constexpr const char* kAccepted =
+    "image,m00,m01,...,m23 (a name and 12 numbers, and turn_rad where the scope turned) is accepted";
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
@@ -80,12 +82,18 @@ Result<View> view_of(std::string_view line, const std::string& place, const std:
                      std::vector<std::string>& notes) {
   const auto fields = split_fields(line);
   if (!fields) return fail(place + "a quote is not closed, or text follows it; " + kAccepted);
-  if (fields->size() != kFields)
+  if (fields->size() != kFields && fields->size() != kFields + 1)
     return fail(place + "has " + std::to_string(fields->size()) + " fields; " + kAccepted);
   if (fields->front().empty()) return fail(place + "names no image; " + kAccepted);
   const auto X_MC = pose_of(*fields, place, notes);
   if (!X_MC) return tl::unexpected(X_MC.error());
-  return View{.image = folder / fields->front(), .X_MC = *X_MC};
+  View view{.image = folder / fields->front(), .X_MC = *X_MC};
+  if (fields->size() == kFields) return view;
+  const auto turn = TextCursor::parse_number<double>(fields->back());
+  if (!turn || !std::isfinite(*turn))
+    return fail(place + "turn_rad is \"" + fields->back() + "\"; a finite number is accepted");
+  view.turn_rad = *turn;
+  return view;
 }
 
 bool is_header(std::string_view line) {
@@ -94,6 +102,13 @@ bool is_header(std::string_view line) {
 }
 
 }  // namespace
+
+Result<void> check_still(const std::vector<View>& views, const std::filesystem::path& file) {
+  const auto turned = std::ranges::find_if(views, [](const View& view) { return view.turn_rad != 0; });
+  if (turned == views.end()) return {};
+  return fail(file.string() + ": the scope's light post was turned in " + turned->image.filename().string() +
+              "; views at the passport's own turn are accepted here");
+}
 
 Result<ViewsFile> read_views(const std::filesystem::path& file) {
   const auto bytes = read_whole_file(file, kLargestFileBytes);

@@ -13,6 +13,7 @@ namespace orcart {
 struct View {
   std::filesystem::path image;  ///< absolute, or relative to the CSV's folder already applied
   Pose<M, C> X_MC;
+  double turn_rad = 0;  ///< of an angled scope's light post since the passport beside it; already in X_MC
 };
 
 struct ViewsFile {
@@ -20,8 +21,11 @@ struct ViewsFile {
   std::vector<std::string> notes;  ///< e.g. poses that were re-orthonormalised, with their deviation
 };
 
-/// `image,m00,m01,...,m23`: row-major 3x4 X_MC, mm. Rotations are re-orthonormalised and told up to a
-/// deviation |R'R - I| of 0.01, and refused beyond.
+/// `image,m00,m01,...,m23[,turn_rad]`: row-major 3x4 X_MC, mm. Rotations are re-orthonormalised and told up
+/// to a deviation |R'R - I| of 0.01, and refused beyond.
 Result<ViewsFile> read_views(const std::filesystem::path& file);
+
+/// For what takes the passport's lens for all views: refuses views with a turn.
+Result<void> check_still(const std::vector<View>& views, const std::filesystem::path& file);
 
 }  // namespace orcart

@@ -36,7 +36,8 @@ Result<OfflinePainter> OfflinePainter::create(const Surface& surface, const Scop
   return self;
 }
 
-Result<ViewPainted> OfflinePainter::paint(const ImageDescriptor& image, const Pose<M, C>& X_MC) {
+Result<ViewPainted> OfflinePainter::paint(const ImageDescriptor& image, const Pose<M, C>& X_MC,
+                                          double turn_rad) {
   if (image.width_px != scope_.width_px || image.height_px != scope_.height_px) {
     return fail("the picture is " + std::to_string(image.width_px) + "x" + std::to_string(image.height_px) +
                 " pixels, the scope's calibration is for " + std::to_string(scope_.width_px) + "x" +
@@ -45,6 +46,7 @@ Result<ViewPainted> OfflinePainter::paint(const ImageDescriptor& image, const Po
   }
   const std::uint32_t unit = next_unit_++;
   painter_->upload(image);
+  painter_->set_turn(turn_rad);
   ViewPainted result;
   mapper_->begin(X_MC, options_.mode);
   while (mapper_->next(patch_)) {

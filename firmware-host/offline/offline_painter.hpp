@@ -32,8 +32,8 @@ class OfflinePainter {
                                        const OfflinePaintOptions& options);
 
   /// Paints one picture of the scope's size, by the options' policy. A view in paper mode whose centre ray
-  /// misses is refused.
-  Result<ViewPainted> paint(const ImageDescriptor& image, const Pose<M, C>& X_MC);
+  /// misses is refused. `turn_rad`: of the light post since the scope's passport, as in X_MC.
+  Result<ViewPainted> paint(const ImageDescriptor& image, const Pose<M, C>& X_MC, double turn_rad = 0);
 
   const AtlasLayout& layout() const { return *layout_; }
   Painter& painter() { return *painter_; }

@@ -44,6 +44,7 @@ StoredCapture capture_of(const Statement& row) {
     capture.facts.X_MC.translation_mm(i) = row.number(12 + 4 * i + 3);
   }
   capture.undone = row.integer(24) != 0;
+  capture.facts.turn_rad = row.number(25);  // 0 where the file's form has none
   return capture;
 }
 
@@ -62,9 +63,9 @@ Result<SessionReader> SessionReader::open(const std::filesystem::path& file) {
     return fail(file.string() + " is no session file; one written by orcartd (*.orcart) is accepted");
   const auto version = database->integer("PRAGMA user_version");
   if (!version) return tl::unexpected(version.error());
-  if (*version != kSessionSchemaVersion)
-    return fail(file.string() + " has form " + std::to_string(*version) + "; form " +
-                std::to_string(kSessionSchemaVersion) + " is accepted");
+  if (*version < 1 || *version > kSessionSchemaVersion)
+    return fail(file.string() + " has form " + std::to_string(*version) + "; forms 1 to " +
+                std::to_string(kSessionSchemaVersion) + " are accepted");
   return SessionReader(file, std::move(*database));
 }
 

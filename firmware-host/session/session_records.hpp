@@ -23,7 +23,7 @@ struct SessionMeta {
   /// [sync] of the run: already added to mid-exposure where a capture's pose was looked up. Files from before
   /// it was kept have none, and read as 0.
   Nanos tracker_against_video{};
-  double turn_rad = 0;  ///< of the light post; in a capture's X_MC already. To 1e-9; absent reads as 0
+  double turn_rad = 0;  ///< of the light post, as told before the run. To 1e-9; absent reads as 0
 };
 
 /// What pictures were painted by. Texts are the files' own.
@@ -41,6 +41,7 @@ struct CaptureFacts {
   Instant matched_at{};  ///< the pose bracket was in hand
   Instant painted_at{};
   Pose<M, C> X_MC;
+  double turn_rad = 0;  ///< of the light post since the run's told turn; already in X_MC
   PoseKind pose_kind = PoseKind::none;
   Nanos pose_distance{};  ///< from mid-exposure to the nearest sample
 };

@@ -6,7 +6,7 @@
 namespace orcart {
 
 inline constexpr std::int64_t kSessionApplicationId = 0x6F726374;  ///< "orct", in the file's own header
-inline constexpr std::int64_t kSessionSchemaVersion = 1;           ///< PRAGMA user_version
+inline constexpr std::int64_t kSessionSchemaVersion = 2;           ///< PRAGMA user_version; 1 had no turn_rad
 
 /// Times are nanoseconds on the monotonic clock; m00..m23 the rows of X_MC as in views.csv, millimetres.
 inline constexpr const char* kSessionTables = R"sql(
@@ -17,7 +17,7 @@ CREATE TABLE captures(
   exposure_start_ns INTEGER, exposure_end_ns INTEGER, dequeued_ns INTEGER, matched_ns INTEGER, painted_ns INTEGER,
   pose_kind INTEGER, pose_distance_ns INTEGER,
   m00 REAL, m01 REAL, m02 REAL, m03 REAL, m10 REAL, m11 REAL, m12 REAL, m13 REAL,
-  m20 REAL, m21 REAL, m22 REAL, m23 REAL, undone INTEGER DEFAULT 0);
+  m20 REAL, m21 REAL, m22 REAL, m23 REAL, undone INTEGER DEFAULT 0, turn_rad REAL DEFAULT 0);
 CREATE INDEX captures_by_unit ON captures(unit);
 CREATE TABLE pictures(
   capture INTEGER PRIMARY KEY REFERENCES captures(id), width_px INTEGER, height_px INTEGER, fourcc INTEGER,

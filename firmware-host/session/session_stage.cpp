@@ -21,6 +21,7 @@ void SessionStage::keep(const CapturedFrame& frame, const CaptureRecord& record)
                              .matched_at = record.matched_at,
                              .painted_at = record.painted_at,
                              .X_MC = record.X_MC,
+                             .turn_rad = record.turn_rad,
                              .pose_kind = record.pose_kind,
                              .pose_distance = record.pose_distance});
 }

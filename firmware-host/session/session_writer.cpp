@@ -97,7 +97,7 @@ Result<SessionWriter::Statements> SessionWriter::prepare(Database& database) {
   auto capture = database.prepare(
       "INSERT INTO captures VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, "
       "?17, ?18, "
-      "?19, ?20, ?21, ?22, ?23, ?24, 0)");
+      "?19, ?20, ?21, ?22, ?23, ?24, 0, ?25)");
   if (!capture) return tl::unexpected(capture.error());
   auto picture = database.prepare("INSERT INTO pictures VALUES(?1, ?2, ?3, ?4, ?5, ?6)");
   if (!picture) return tl::unexpected(picture.error());
@@ -170,7 +170,7 @@ Result<void> SessionWriter::write_capture(const CaptureSlot& slot) {
           .with(id, f.unit, f.streaming ? 1 : 0, slot.frame.sequence, f.edge_at, slot.frame.exposure_start,
                 slot.frame.exposure_end, slot.frame.dequeued_at, f.matched_at, f.painted_at,
                 static_cast<int>(f.pose_kind), f.pose_distance, r(0, 0), r(0, 1), r(0, 2), t(0), r(1, 0),
-                r(1, 1), r(1, 2), t(1), r(2, 0), r(2, 1), r(2, 2), t(2))
+                r(1, 1), r(1, 2), t(1), r(2, 0), r(2, 1), r(2, 2), t(2), f.turn_rad)
           .step();
   if (!row) return tl::unexpected(row.error());
   const ImageDescriptor& image = slot.frame.image;

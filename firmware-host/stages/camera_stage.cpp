@@ -24,7 +24,8 @@ StepReport CameraStage::step(Instant) noexcept {
     fault_.clear();
     retry_at_ = Instant{};
     retry_after_ = kFirstRetry;
-    const CapturedFrame frame = intake_.accept(*buffer, clock_.now());
+    CapturedFrame frame = intake_.accept(*buffer, clock_.now());
+    if (notch_ != nullptr) frame.notch_turn_rad = notch_->turn_in(frame.image);
     news_.last_frame = frame.exposure_end;
     if (!lanes_.frames.try_push(frame)) source_.give_back(buffer->index);
     ++report.items;

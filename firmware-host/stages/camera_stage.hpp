@@ -8,13 +8,16 @@
 #include "firmware-host/stages/watched_fault.hpp"
 #include "realtime/kernel/clock.hpp"
 #include "realtime/kernel/stage.hpp"
+#include "realtime/optics/notch_search.hpp"
 
 namespace orcart {
 
 class CameraStage final : public Stage {
  public:
-  CameraStage(FrameSource& source, const Clock& clock, const StampSettings& stamps, Lanes& lanes)
-      : source_(source), clock_(clock), intake_(stamps), lanes_(lanes) {}
+  /// `notch`: looks for it in every picture; null: nobody asks.
+  CameraStage(FrameSource& source, const Clock& clock, const StampSettings& stamps, Lanes& lanes,
+              NotchSearch* notch = nullptr)
+      : source_(source), clock_(clock), intake_(stamps), lanes_(lanes), notch_(notch) {}
 
   std::string_view name() const noexcept override { return "camera"; }
   StepReport step(Instant now) noexcept override;
@@ -35,6 +38,7 @@ class CameraStage final : public Stage {
   const Clock& clock_;
   FrameIntake intake_;
   Lanes& lanes_;
+  NotchSearch* notch_;
   CameraNews news_;
   WatchedFault fault_;
   Instant retry_at_{};

@@ -34,6 +34,7 @@ struct CaptureRecord {
   Instant painted_at{};
   Instant on_panel_at{};  ///< scan-out start of the first panel picture that shows it
   Pose<M, C> X_MC;
+  double turn_rad = 0;  ///< of the light post since the passport's turn
   PoseKind pose_kind = PoseKind::none;
   Nanos pose_distance{};
   bool undone = false;

@@ -24,8 +24,9 @@ struct TrackerNews {
   bool running = false;
   ToolState scope = ToolState::unseen;
   ToolState reference = ToolState::unseen;
-  Instant bumped_at{};    ///< when the sensor was last knocked; zero where never
-  bool infrared = false;  ///< too much light of other sources
+  ToolState second = ToolState::unseen;  ///< a turning scope's second marker
+  Instant bumped_at{};                   ///< when the sensor was last knocked; zero where never
+  bool infrared = false;                 ///< too much light of other sources
 };
 
 /// The camera as its stage sees it, for the panel.
@@ -46,6 +47,8 @@ struct ScopeNow {
   Instant at{};
   PoseAnswer pose;
   Pose<M, C> X_MC;
+  double turn_rad = 0;     ///< of the light post since the passport's turn
+  bool turn_known = true;  ///< false: it is followed, and not told now; pose.kind is none then
 };
 
 /// A frame that is to be painted, for whom, and since when that is known.

@@ -1,6 +1,8 @@
 // One part of a view a step; the rest is carried, and a view waits where no patch is free.
 #include "firmware-host/stages/mapper_stage.hpp"
 
+#include "realtime/optics/scope_turn.hpp"
+
 namespace orcart {
 
 MapperStage::MapperStage(Mapper& mapper, std::vector<CutoutPatch>& patches, const Clock& clock,
@@ -27,6 +29,7 @@ StepReport MapperStage::step(Instant) noexcept {
                                 .request = view_.request,
                                 .patch = patch,
                                 .X_MC = X_MC_,
+                                .turn_rad = view_.matched.turn_rad,
                                 .pose_kind = view_.matched.pose.kind,
                                 .pose_distance = view_.matched.pose.distance,
                                 .matched_at = view_.decided_at,
@@ -38,7 +41,7 @@ StepReport MapperStage::step(Instant) noexcept {
 
 bool MapperStage::begin_next() noexcept {
   if (!lanes_.selected.try_pop(view_)) return false;
-  X_MC_ = settings_.X_MR * view_.matched.pose.X_RS * settings_.X_SC;
+  X_MC_ = settings_.X_MR * view_.matched.pose.X_RS * optics_at(settings_.scope, view_.matched.turn_rad).X_SC;
   mapper_.begin(X_MC_, settings_.mode);
   in_view_ = true;
   return true;

@@ -13,8 +13,8 @@ namespace orcart {
 
 struct MapperStageSettings {
   TextureMode mode = TextureMode::perspective;
-  Pose<M, R> X_MR;  ///< registration
-  Pose<S, C> X_SC;  ///< hand-eye
+  Pose<M, R> X_MR;   ///< registration
+  ScopeModel scope;  ///< the passport, with hand-eye and [turning]
 };
 
 class MapperStage final : public Stage {

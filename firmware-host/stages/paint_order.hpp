@@ -30,6 +30,7 @@ struct PaintOrder {
   Refusal refusal = Refusal::none;  ///< fail
   std::uint32_t patch = 0;          ///< paint: slot of the patch
   Pose<M, C> X_MC;                  ///< paint
+  double turn_rad = 0;              ///< paint: of the light post since the passport's turn
   PoseKind pose_kind = PoseKind::none;
   Nanos pose_distance{};  ///< paint: from mid-exposure to the nearest sample
   Instant matched_at{};   ///< when the pose bracket was in hand

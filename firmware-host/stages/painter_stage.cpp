@@ -89,6 +89,7 @@ void PainterStage::paint(const PaintOrder& order, Instant now) noexcept {
   painter_.upload(order.frame.image);
   upload_due_ = have_newest_;  // the inset goes back to the newest picture
   const bool last = patches_[order.patch].last_part;
+  painter_.set_turn(order.turn_rad);
   if (last && errors_ != nullptr) painter_.set_view_error(errors_->at(order.X_MC));
   const PaintReport report = painter_.paint(patches_[order.patch], order.request.unit);
   (void)lanes_.patches_home.try_push(order.patch);
@@ -127,6 +128,7 @@ void PainterStage::painted(const PaintOrder& order, Instant now) noexcept {
                        .mapped_at = order.mapped_at,
                        .painted_at = now,
                        .X_MC = order.X_MC,
+                       .turn_rad = order.turn_rad,
                        .pose_kind = order.pose_kind,
                        .pose_distance = order.pose_distance};
   captures_.append(record);

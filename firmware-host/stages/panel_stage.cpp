@@ -15,6 +15,8 @@ std::string_view words_for(Refusal refusal) {
       return "CAPTURE FAILED: the tracker did not see the tool";
     case Refusal::no_pose:
       return "CAPTURE FAILED: no pose around the picture";
+    case Refusal::turn_unknown:
+      return "CAPTURE FAILED: nothing tells how far the scope is turned";
     case Refusal::too_late:
       return "CAPTURE FAILED: the pose came too late";
     case Refusal::no_frame:
@@ -147,6 +149,7 @@ void PanelStage::fill_status(Instant now) noexcept {
   screen_state_.show_live = status.video != Freshness::lost;
   screen_state_.scope_predicted = scope_.pose.kind == PoseKind::predicted;
   const bool show_scope = tracked && scope_.pose.kind != PoseKind::none && now - scope_.at < kScopeShownFor;
+  if (scope_.turn_known) screen_state_.turn_rad = scope_.turn_rad;
   screen_state_.X_MC = show_scope ? std::optional(scope_.X_MC) : std::nullopt;
 
   if (paint.version != screen_state_.paint_version || now >= coverage_due_) {
@@ -189,6 +192,11 @@ void PanelStage::choose_notice(Instant now) noexcept {
   if (!status.tool_seen) return notice(Notice::Level::warning, "TOOL NOT SEEN: clear its line of sight");
   if (!status.reference_seen)
     return notice(Notice::Level::warning, "REFERENCE NOT SEEN: clear its line of sight");
+  if (!scope_.turn_known && now - scope_.at < kScopeShownFor) {
+    return notice(Notice::Level::warning, settings_.turn == TurnSource::marker
+                                              ? "TURN NOT KNOWN: clear the second marker's line of sight"
+                                              : "TURN NOT KNOWN: no notch in the picture; light its rim");
+  }
   if (tracker_.bumped_at != Instant{} && now - tracker_.bumped_at < kBumpShownFor)
     return notice(Notice::Level::warning, "TRACKER BUMPED: verify on a landmark");
   if (camera_.frozen) return notice(Notice::Level::warning, "VIDEO FROZEN? The picture repeats");

@@ -17,9 +17,17 @@ std::uint32_t SyncStage::take_poses() noexcept {
   PoseSample sample;
   for (const std::size_t waiting = lanes_.poses.size(); count < waiting && lanes_.poses.try_pop(sample);
        ++count) {
+    if (settings_.matcher.turn == TurnSource::marker) sample.turn_rad = turn_by_markers(sample);
     (void)history_.push(sample);
   }
   return count;
+}
+
+std::optional<double> SyncStage::turn_by_markers(const PoseSample& sample) const noexcept {
+  if (sample.scope != ToolState::seen || sample.second != ToolState::seen) return std::nullopt;
+  const MarkedTurn turn =
+      turn_of(*settings_.scope.turning, sample.X_TS.rotation.transpose() * sample.X_TL.rotation);
+  return turn.swing_rad <= kMostSwing_rad ? std::optional(turn.turn_rad) : std::nullopt;
 }
 
 std::uint32_t SyncStage::take_presses() noexcept {
@@ -71,6 +79,8 @@ std::uint32_t SyncStage::take_frames(Instant now) noexcept {
   CapturedFrame frame;
   for (const std::size_t waiting = lanes_.frames.size(); count < waiting && lanes_.frames.try_pop(frame);
        ++count) {
+    if (settings_.matcher.turn == TurnSource::notch)
+      frame.notch_turn_rad = notch_turn_.follow(frame.mid_exposure(), frame.notch_turn_rad);
     (void)lanes_.orders.try_push({.kind = PaintOrderKind::show, .frame = frame});
     if (const auto refused = matcher_.add(frame)) select(*refused, now);
   }
@@ -103,7 +113,17 @@ void SyncStage::fail(const CaptureRequest& request, Refusal why) noexcept {
 
 void SyncStage::tell_scope(Instant now) noexcept {
   ScopeNow scope{.at = now, .pose = history_.at(now)};
-  if (scope.pose.kind != PoseKind::none) scope.X_MC = settings_.X_MR * scope.pose.X_RS * settings_.X_SC;
+  scope.turn_rad = scope.pose.turn_rad;
+  if (settings_.matcher.turn == TurnSource::notch) {
+    const auto turn = notch_turn_.now(now);
+    scope.turn_known = turn.has_value();
+    scope.turn_rad = turn.value_or(0);
+  } else if (settings_.matcher.turn == TurnSource::marker) {
+    scope.turn_known = scope.pose.kind != PoseKind::none || !history_.lacks_turn_around(now);
+  }
+  if (!scope.turn_known) scope.pose.kind = PoseKind::none;
+  if (scope.pose.kind != PoseKind::none)
+    scope.X_MC = settings_.X_MR * scope.pose.X_RS * optics_at(settings_.scope, scope.turn_rad).X_SC;
   lanes_.scope_now.post(scope);
 }
 

@@ -4,6 +4,7 @@
 
 #include "firmware-host/stages/lanes.hpp"
 #include "realtime/kernel/stage.hpp"
+#include "realtime/optics/scope_turn.hpp"
 #include "realtime/sync/capture_selector.hpp"
 #include "realtime/sync/frame_matcher.hpp"
 #include "realtime/sync/pose_history.hpp"
@@ -15,12 +16,16 @@ struct SyncStageSettings {
   FrameMatcherSettings matcher;
   CaptureSelectorSettings selector;
   Pose<M, R> X_MR;                ///< registration
-  Pose<S, C> X_SC;                ///< hand-eye
+  ScopeModel scope;               ///< the passport, with hand-eye and [turning]
   bool painting_blocked = false;  ///< every press fails, and says so
 };
 
 class SyncStage final : public Stage {
  public:
+  /// A second marker further than this off the calibrated axis was bent or has slipped: its turn is not
+  /// believed.
+  static constexpr double kMostSwing_rad = 5 * 3.14159265358979 / 180;
+
   SyncStage(const SyncStageSettings& settings, Lanes& lanes)
       : settings_(settings),
         lanes_(lanes),
@@ -33,6 +38,7 @@ class SyncStage final : public Stage {
 
  private:
   std::uint32_t take_poses() noexcept;
+  std::optional<double> turn_by_markers(const PoseSample& sample) const noexcept;
   std::uint32_t take_presses() noexcept;
   std::uint32_t take_frames(Instant now) noexcept;
   void decide(Instant now) noexcept;
@@ -46,6 +52,7 @@ class SyncStage final : public Stage {
   PoseHistory history_;
   FrameMatcher matcher_;
   CaptureSelector selector_;
+  NotchTurn notch_turn_;
 };
 
 }  // namespace orcart

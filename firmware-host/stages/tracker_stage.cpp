@@ -19,6 +19,7 @@ StepReport TrackerStage::step(Instant now) noexcept {
     news_.last_reply = sample.arrived_at;
     news_.scope = sample.scope;
     news_.reference = sample.reference;
+    news_.second = sample.second;
     if (sample.complete()) news_.last_complete = sample.arrived_at;
   }
   lanes_.tracker_news.post(news_);
@@ -42,6 +43,10 @@ PoseSample TrackerStage::sample_of(const TrackerReply& reply) noexcept {
   const bool one_frame =
       scope.device_frame == reply.device_frame && reference.device_frame == reply.device_frame;
   if (sample.complete() && !one_frame) sample.reference = ToolState::doubtful;
+  if (reply.tool_count > 2 && reply.tools[2].device_frame == reply.device_frame) {
+    sample.second = reply.tools[2].state;
+    sample.X_TL = pose_from_quaternion<T, L>(reply.tools[2].quaternion, reply.tools[2].translation_mm);
+  }
   return sample;
 }
 

@@ -11,7 +11,8 @@
 
 namespace orcart {
 
-/// Tool 0 of the driver is the scope, tool 1 the reference.
+/// Tool 0 of the driver is the scope, tool 1 the reference, tool 2, where there is one, a turning scope's
+/// second marker.
 class TrackerStage final : public Stage {
  public:
   TrackerStage(NdiDriver& driver, const ClockFitSettings& clock_fit, Lanes& lanes)

@@ -120,6 +120,28 @@ void tracker(int polls) {
   count("tracker", polls, [&] { run_until_poll(1000 + static_cast<std::uint64_t>(polls)); });
 }
 
+/// Pictures of 640 x 480 with a scope's circle and notch.
+void notch(int pictures) {
+  ScopeModel scope{.width_px = 640, .height_px = 480};
+  scope.lens = {.fx_px = 340, .fy_px = 340, .cx_px = 321, .cy_px = 239};
+  scope.mask = {.cx_px = 321, .cy_px = 239, .radius_px = 210};
+  scope.notch_rad = 0.4;
+  scope.turning = Turning{.centre_px = {317, 243}};
+  std::vector<std::byte> grey;
+  for (int y = 0; y < 480; ++y)
+    for (int x = 0; x < 640; ++x) {
+      const double radius = std::hypot(x - 321, y - 239) / 210, angle = std::atan2(y - 239, x - 321);
+      const bool tooth = radius > 0.91 && std::abs(angle - 0.4) < 0.05;
+      grey.push_back(std::byte(radius < 1 && !tooth ? 120 : 16));
+    }
+  NotchSearch search(scope);
+  const auto image = packed_image(grey.data(), PixelFormat::gray8, 640, 480);
+  (void)search.turn_in(image);
+  count("notch", pictures, [&] {
+    for (int i = 0; i < pictures; ++i) (void)search.turn_in(image);
+  });
+}
+
 /// As many frames as there are buffers.
 void camera(int frames) {
   SimulatedClock clock;
@@ -220,6 +242,7 @@ int main() {
   for (const int edges : {16, 32}) pedal(edges);
   for (const int polls : {50, 100}) tracker(polls);
   for (const int frames : {5, 10}) camera(frames);
+  for (const int pictures : {5, 10}) notch(pictures);
   for (const int poses : {32, 64}) match(poses);
   for (const int rows : {20, 40}) mapper(rows);
   for (const int views : {25, 50}) cutouts(views);

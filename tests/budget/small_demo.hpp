@@ -10,8 +10,8 @@
 
 namespace orcart::testing {
 
-inline CartConfig small_demo() {
-  auto config = read_cart(std::filesystem::path(std::getenv("ORCART_SOURCE_DIR")) / "share/carts/demo.toml");
+inline CartConfig small_demo(const char* name = "demo.toml") {
+  auto config = read_cart(std::filesystem::path(std::getenv("ORCART_SOURCE_DIR")) / "share/carts" / name);
   if (!config) ADD_FAILURE() << config.error().message;
   config->texel_mm = 0.4;
   config->panel = {.width_px = 640, .height_px = 480, .refresh_hz = 20};

@@ -1,8 +1,11 @@
 // The demo's files, made smaller.
 #include "tests/path/cart_rig.hpp"
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -12,6 +15,17 @@ namespace {
 std::filesystem::path folder_of(const char* variable) {
   const char* folder = std::getenv(variable);
   return folder != nullptr ? folder : std::filesystem::current_path();
+}
+
+/// The shipped angled scope, looking off its shaft by another angle: written where a patient is read from.
+std::filesystem::path passport_of(const AngledWish& wish) {
+  auto scope = read_scope(folder_of("ORCART_SOURCE_DIR") / "share/scopes/neuro-30.toml");
+  if (!scope) return {};
+  const double more_rad = wish.view_deg * std::numbers::pi / 180 - scope->turning->view_angle_rad;
+  scope->X_SC.rotation *= Eigen::AngleAxisd(more_rad, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  scope->turning->view_angle_rad += more_rad;
+  const auto file = folder_of("ORCART_BINARY_DIR") / ("angled-" + std::to_string(getpid()) + ".toml");
+  return write_scope(file, *scope) ? file : std::filesystem::path();
 }
 
 }  // namespace
@@ -30,7 +44,8 @@ RigWish stream() {
 
 std::unique_ptr<CartRig> CartRig::create(const RigWish& wish) {
   auto rig = std::make_unique<CartRig>();
-  auto config = read_cart(folder_of("ORCART_SOURCE_DIR") / "share/carts/demo.toml");
+  auto config = read_cart(folder_of("ORCART_SOURCE_DIR") /
+                          (wish.angled ? "share/carts/demo-angled.toml" : "share/carts/demo.toml"));
   if (!config) {
     ADD_FAILURE() << config.error().message;
     return nullptr;
@@ -43,7 +58,17 @@ std::unique_ptr<CartRig> CartRig::create(const RigWish& wish) {
   rig->config.simulation.marker_noise_mm = 0;
   rig->config.simulation.picture_noise = false;
   rig->config.simulation.movie = folder_of("ORCART_BINARY_DIR") / "movies-of-tests";
+  if (wish.angled) {
+    rig->config.scope = passport_of(*wish.angled);
+    rig->config.turn = wish.angled->follow;
+    if (wish.angled->follow == TurnSource::told) rig->config.turn_rad = 0;
+    rig->config.tracker.second = wish.angled->follow == TurnSource::marker;
+    rig->config.simulation.marker_noise_mm = wish.angled->marker_noise_mm;
+    rig->config.simulation.turn_rad = wish.script.turn_rad;
+    rig->config.simulation.turn_every_s = wish.script.turn_every_s;
+  }
   auto patient = read_patient(rig->config);
+  if (wish.angled) std::filesystem::remove(rig->config.scope);
   if (!patient) {
     ADD_FAILURE() << patient.error().message;
     return nullptr;

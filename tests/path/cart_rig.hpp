@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "board/sim/simulated_gpio.hpp"
@@ -12,8 +13,16 @@
 
 namespace orcart::testing {
 
+/// A scope that looks off its shaft and whose light post is turned.
+struct AngledWish {
+  double view_deg = 30;
+  TurnSource follow = TurnSource::marker;
+  double marker_noise_mm = 0;
+};
+
 /// What a test wants to be different from the demo.
 struct RigWish {
+  std::optional<AngledWish> angled{};  ///< nothing: the demo's straight scope
   double duration_s = 5;
   double camera_hz = 10;
   double texel_mm = 0.4;

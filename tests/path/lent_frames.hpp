@@ -21,6 +21,7 @@ class LentFrames final : public FrameSource {
   Result<FrameBuffer, PortFault> take() noexcept override {
     auto buffer = camera_.take();
     if (buffer) lent_twice_ += out_.insert(buffer->index).second ? 0 : 1;
+    if (buffer && black_from_ <= buffer->stamp && buffer->stamp < black_until_) blacken(buffer->image);
     return buffer;
   }
   Result<void, PortFault> recover() noexcept override { return camera_.recover(); }
@@ -29,12 +30,22 @@ class LentFrames final : public FrameSource {
     camera_.give_back(index);
   }
 
+  /// Frames with a stamp in [from, until) come black.
+  void blacken(Instant from, Instant until) { black_from_ = from, black_until_ = until; }
+
   std::size_t out() const { return out_.size(); }
   int lent_twice() const { return lent_twice_; }
   int returned_twice() const { return returned_twice_; }
 
  private:
+  static void blacken(const ImageDescriptor& image) {
+    const auto bytes = packed_bytes(image.format, image.width_px, image.height_px);
+    for (std::size_t i = 0; i < bytes; ++i)
+      image.planes[0].data[i] = std::byte(i % 2 == 0 ? 16 : 128);  // YUYV
+  }
+
   FrameSource& camera_;
+  Instant black_from_ = Instant::max(), black_until_ = Instant::max();
   std::set<std::uint32_t> out_;
   int lent_twice_ = 0, returned_twice_ = 0;
 };

@@ -111,10 +111,10 @@ struct GuardedStages {
               .matcher = {},
               .selector = {},
               .X_MR = rig.patient.registration.X_MR,
-              .X_SC = rig.patient.scope.X_SC},
+              .scope = rig.patient.scope},
              lanes),
         mapping(mapper, patches, rig.clock,
-                {.X_MR = rig.patient.registration.X_MR, .X_SC = rig.patient.scope.X_SC}, lanes),
+                {.X_MR = rig.patient.registration.X_MR, .scope = rig.patient.scope}, lanes),
         letting_go(lanes, patches) {}
 
   std::vector<ThreadPlan> plans() {

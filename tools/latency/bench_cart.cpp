@@ -49,7 +49,9 @@ Result<SimulatedWorld> world_of(const CartConfig& config, const Patient& patient
                          .entry_direction = {entry[0], entry[1], entry[2]},
                          .undo_at = -1,
                          .stream_at = -1,
-                         .hide_at = -1};
+                         .hide_at = -1,
+                         .turn_rad = config.simulation.turn_rad,
+                         .turn_every_s = config.simulation.turn_every_s};
   return SimulatedWorld::create(
       {.surface = patient.surface, .rays = *rays, .scope = patient.scope, .script = script});
 }

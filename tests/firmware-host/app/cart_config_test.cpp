@@ -102,5 +102,25 @@ TEST(CartConfig, NamesTheFileThatIsMissing) {
   EXPECT_TRUE(tells(config.error().message, "/nowhere/cart.toml"));
 }
 
+TEST(CartConfig, FollowsAScopeThatTurnsByWhatIsThere) {
+  const std::string angled = text_of(demo_cart().parent_path() / "demo-angled.toml");
+  const TemporaryFolder folder;
+  const auto config = read_cart(folder.write("cart.toml", angled));
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_EQ(config->turn, TurnSource::marker);
+  EXPECT_TRUE(config->tracker.second);
+  EXPECT_EQ(config->tracker.second_rom.filename(), "second.rom");
+  EXPECT_NEAR(config->simulation.turn_rad, 1.0472, 1e-4);
+
+  const std::string second = "second_rom = \"../tools/second.rom\"";
+  EXPECT_TRUE(tells(complaint(replaced(angled, second, "")), "wants the second marker's definition"));
+  const std::string by_notch = replaced(angled, "turn = \"marker\"", "turn = \"notch\"");
+  EXPECT_TRUE(tells(complaint(by_notch), "nobody asks"));
+  EXPECT_EQ(complaint(replaced(by_notch, second, "")), "");
+  EXPECT_TRUE(tells(complaint(replaced(angled, "turn = \"marker\"", "turn = \"marker\"\nturn_deg = 10")),
+                    "either told or followed"));
+  EXPECT_TRUE(tells(complaint(replaced(angled, "turn = \"marker\"", "turn = \"guess\"")), "notch"));
+}
+
 }  // namespace
 }  // namespace orcart::testing

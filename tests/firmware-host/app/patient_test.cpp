@@ -105,5 +105,38 @@ TEST(Patient, RefusesToLookFromInsideAnOpenSurface) {
   EXPECT_NE(patient.error().message.find("inside"), std::string::npos) << patient.error().message;
 }
 
+TEST(Patient, AScopeThatIsFollowedStaysAtThePassportsTurnAndIsRefusedWhereThatLacksWhatItIsFollowedBy) {
+  const TemporaryFolder folder;
+  CartConfig config = demo();
+  const auto angled = demo_cart().parent_path().parent_path() / "scopes/neuro-30.toml";
+  config.scope = angled;
+  for (const TurnSource source : {TurnSource::marker, TurnSource::notch}) {
+    config.turn = source;
+    const auto patient = read_patient(config);
+    ASSERT_TRUE(patient) << patient.error().message;
+    EXPECT_EQ(patient->painting_blocked, "");
+    EXPECT_EQ(patient->scope.lens.cx_px, 321.5);
+  }
+  const std::string text = text_of(angled);
+  const auto refusal_of = [&](TurnSource source, const std::string& passport) {
+    config.turn = source;
+    config.scope = folder.write("lacking.toml", passport);
+    const auto patient = read_patient(config);
+    return patient ? "accepted" : patient.error().message;
+  };
+  EXPECT_NE(
+      refusal_of(TurnSource::notch, replaced(text, "notch_rad = -1.5\n", "")).find("no [mask] notch_rad"),
+      std::string::npos);
+  const auto second = text.find("R_SL");
+  ASSERT_NE(second, std::string::npos);
+  const std::string without = text.substr(0, second) + text.substr(text.find('\n', second));
+  EXPECT_NE(refusal_of(TurnSource::marker, without).find("no [turning] R_SL"), std::string::npos);
+  config = demo();
+  config.turn = TurnSource::notch;
+  const auto straight = read_patient(config);
+  ASSERT_FALSE(straight);
+  EXPECT_NE(straight.error().message.find("no [turning]"), std::string::npos) << straight.error().message;
+}
+
 }  // namespace
 }  // namespace orcart::testing

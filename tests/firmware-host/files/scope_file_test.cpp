@@ -115,12 +115,14 @@ ScopeModel scope_with(LensModel model) {
   TwistCovariance hand_eye = TwistCovariance::Constant(1e-7 / 3);
   hand_eye.diagonal() << 0.01, 0.02, 0.03, 1e-6, 2e-6, 3e-6;
   scope.hand_eye_covariance = hand_eye;
-  scope.turning = Turning{.view_angle_rad = 0.5,
-                          .centre_px = {317.25, 1.0 / 3},
-                          .centre_deviation_px = 0.1,
-                          .marker = TurnMarker::head,
-                          .axis = {0.6, 0, 0.8},
-                          .axis_point_mm = {1.0 / 3, -2, 0}};
+  scope.turning =
+      Turning{.view_angle_rad = 0.5,
+              .centre_px = {317.25, 1.0 / 3},
+              .centre_deviation_px = 0.1,
+              .marker = TurnMarker::head,
+              .axis = {0.6, 0, 0.8},
+              .axis_point_mm = {1.0 / 3, -2, 0},
+              .R_SL = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix()};
   return scope;
 }
 
@@ -157,6 +159,24 @@ TEST_P(EachLens, ComesBackAsItWasWritten) {
   EXPECT_EQ(back->turning->marker, TurnMarker::head);
   EXPECT_TRUE(back->turning->axis.isApprox(scope.turning->axis, 1e-14));
   EXPECT_EQ(back->turning->axis_point_mm, scope.turning->axis_point_mm);
+  ASSERT_TRUE(back->turning->R_SL);
+  EXPECT_TRUE(back->turning->R_SL->isApprox(*scope.turning->R_SL, 1e-14));
+}
+
+TEST(ScopeFile, KeepsTheAxisOfAMarkerOnTheShaftWhereThereIsASecondOne) {
+  const TemporaryFolder folder;
+  ScopeModel scope = scope_with(LensModel::brown);
+  scope.turning->marker = TurnMarker::shaft;
+  ASSERT_TRUE(write_scope(folder / "scope.toml", scope));
+  const auto back = read_scope(folder / "scope.toml");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_TRUE(back->turning->axis.isApprox(scope.turning->axis, 1e-14));
+  scope.turning->R_SL = Eigen::Matrix3d::Ones();
+  ASSERT_TRUE(write_scope(folder / "scope.toml", scope));
+  const auto refused = read_scope(folder / "scope.toml");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("R_SL is no rotation"), std::string::npos)
+      << refused.error().message;
 }
 
 INSTANTIATE_TEST_SUITE_P(ScopeFile, EachLens,

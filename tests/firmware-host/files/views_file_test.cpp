@@ -87,7 +87,7 @@ TEST(ViewsFile, RefusesNumbersThatAreNone) {
 
 TEST(ViewsFile, RefusesTheWrongNumberOfFieldsAndOpenQuotes) {
   EXPECT_NE(error_of("a.png,1,0,0").find("views.csv:1: has 4 fields; image,m00"), std::string::npos);
-  EXPECT_NE(error_of("a.png,1,0,0,0,0,1,0,0,0,0,1,0,9").find("has 14 fields"), std::string::npos);
+  EXPECT_NE(error_of("a.png,1,0,0,0,0,1,0,0,0,0,1,0,9,9").find("has 15 fields"), std::string::npos);
   EXPECT_NE(error_of(",1,0,0,0,0,1,0,0,0,0,1,0").find("names no image"), std::string::npos);
   EXPECT_NE(error_of("\"a.png,1,0,0,0,0,1,0,0,0,0,1,0").find("a quote is not closed"), std::string::npos);
   EXPECT_NE(error_of("\"a\"b,1,0,0,0,0,1,0,0,0,0,1,0").find("text follows it"), std::string::npos);
@@ -104,6 +104,21 @@ TEST(ViewsFile, NeverBreaksOnATextCutShort) {
   const std::string text = std::string(kHeader) + "\r\n\"a,b.png\",1,0,0,0,0,1,0,0,0,0,1,0\r\n";
   for (std::size_t length = 0; length < text.size() - 4; ++length)
     EXPECT_FALSE(read_text(folder, text.substr(0, length))) << length;
+}
+
+TEST(ViewsFile, ReadsTheTurnOfAScopeThatTurned) {
+  const TemporaryFolder folder;
+  const auto read =
+      read_text(folder, std::string(kHeader) + ",turn_rad\na.png,1,0,0,0,0,1,0,0,0,0,1,0,-0.25\n" +
+                            "b.png,1,0,0,0,0,1,0,0,0,0,1,0\n");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->views[0].turn_rad, -0.25);
+  EXPECT_EQ(read->views[1].turn_rad, 0);
+  const auto still = check_still(read->views, "views.csv");
+  ASSERT_FALSE(still);
+  EXPECT_NE(still.error().message.find("turned in a.png"), std::string::npos) << still.error().message;
+  EXPECT_TRUE(check_still({read->views[1]}, "views.csv"));
+  EXPECT_NE(error_of("a.png,1,0,0,0,0,1,0,0,0,0,1,0,left\n").find("turn_rad is \"left\""), std::string::npos);
 }
 
 }  // namespace

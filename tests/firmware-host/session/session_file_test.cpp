@@ -78,6 +78,7 @@ TEST_F(SessionFile, KeepsACaptureToTheLastBit) {
   EXPECT_EQ(c.facts.pose_distance, 3ns);
   EXPECT_EQ(c.facts.X_MC.rotation, expected.X_MC.rotation);
   EXPECT_EQ(c.facts.X_MC.translation_mm, expected.X_MC.translation_mm);
+  EXPECT_EQ(c.facts.turn_rad, expected.turn_rad);
   EXPECT_FALSE(c.undone);
 
   const auto picture = read.picture(1);
@@ -132,6 +133,26 @@ TEST_F(SessionFile, KeepsMetaCalibrationEventsAndBudgets) {
   EXPECT_EQ(read.budgets()->front().p99, 2ms);
   EXPECT_EQ(read.budgets()->front().misses, 4U);
   EXPECT_TRUE(read.check());
+}
+
+TEST_F(SessionFile, OfTheFormWithoutTurnsIsReadAsOneThatStood) {
+  {
+    SessionWriter session = writer();
+    offer(3);
+    ASSERT_TRUE(session.write_pending(slots_));
+  }
+  {
+    auto database = Database::open(file_, Database::Mode::write);
+    ASSERT_TRUE(database);
+    ASSERT_TRUE(database->run("ALTER TABLE captures DROP COLUMN turn_rad"));
+    ASSERT_TRUE(database->run("PRAGMA user_version = 1"));
+  }
+  SessionReader read = reader();
+  const auto captures = read.captures();
+  ASSERT_TRUE(captures) << captures.error().message;
+  ASSERT_EQ(captures->size(), 1U);
+  EXPECT_EQ(captures->front().facts.turn_rad, 0);
+  EXPECT_EQ(captures->front().facts.X_MC.translation_mm, facts_number(3).X_MC.translation_mm);
 }
 
 TEST_F(SessionFile, MayBeReadByItsOwnerAlone) {
@@ -222,11 +243,11 @@ TEST_F(SessionFile, RefusesALaterForm) {
   { SessionWriter session = writer(); }
   {
     auto database = Database::open(file_, Database::Mode::write);
-    ASSERT_TRUE(database->run("PRAGMA user_version = 2"));
+    ASSERT_TRUE(database->run("PRAGMA user_version = 3"));
   }
   const auto opened = SessionReader::open(file_);
   ASSERT_FALSE(opened);
-  EXPECT_NE(opened.error().message.find("has form 2; form 1 is accepted"), std::string::npos);
+  EXPECT_NE(opened.error().message.find("has form 3; forms 1 to 2 are accepted"), std::string::npos);
 }
 
 TEST_F(SessionFile, RefusesADamagedPictureByItsNumber) {

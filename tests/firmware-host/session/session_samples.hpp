@@ -62,6 +62,7 @@ inline CaptureFacts facts_number(std::uint32_t number) {
   facts.X_MC.rotation =
       Eigen::AngleAxisd(0.01 * number, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   facts.X_MC.translation_mm = {1.0 / 3 * number, -2, 1e-9};
+  facts.turn_rad = 0.1 * number;
   facts.pose_kind = PoseKind::interpolated;
   facts.pose_distance = Nanos{number};
   return facts;

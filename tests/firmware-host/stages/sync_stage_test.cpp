@@ -35,7 +35,7 @@ class SyncStageTest : public ::testing::Test {
   auto count(PaintOrderKind kind) const { return std::ranges::count(orders, kind, &PaintOrder::kind); }
 
   Lanes lanes{small_lanes()};
-  SyncStage stage{{.history = {.period = 16ms}, .matcher = {}, .selector = {}, .X_MR = {}, .X_SC = {}},
+  SyncStage stage{{.history = {.period = 16ms}, .matcher = {}, .selector = {}, .X_MR = {}, .scope = {}},
                   lanes};
   std::vector<PaintOrder> orders;
   std::vector<Selection> selected;
@@ -108,6 +108,46 @@ TEST(SyncStageBlocked, FailsEveryPressAtOnceAndSelectsNothing) {
   const auto failed = std::ranges::find(orders, PaintOrderKind::fail, &PaintOrder::kind);
   ASSERT_NE(failed, orders.end());
   EXPECT_EQ(failed->refusal, Refusal::blocked);
+}
+
+/// A scope with its marker on the head and a second one on the light post, which is at `turn_rad` and bent by
+/// so much.
+Refusal refusal_with(double turn_rad, double bent_rad, double* told_rad = nullptr) {
+  ScopeModel scope;
+  scope.turning = Turning{.marker = TurnMarker::head, .R_SL = Eigen::Matrix3d::Identity()};
+  Lanes lanes{small_lanes()};
+  SyncStage stage{{.history = {.period = 16ms, .needs_turn = true},
+                   .matcher = {.turn = TurnSource::marker},
+                   .scope = scope},
+                  lanes};
+  for (int ms = 0; ms < 400; ++ms) {
+    if (ms % 16 == 0) {
+      PoseSample sample = sample_at(at_ms(ms));
+      sample.second = ToolState::seen;
+      sample.X_TL.rotation = sample.X_TS.rotation *
+                             Eigen::AngleAxisd(bent_rad, Eigen::Vector3d::UnitX()).toRotationMatrix() *
+                             second_marker_at(*scope.turning, turn_rad);
+      (void)lanes.poses.try_push(sample);
+    }
+    if (ms == 50) (void)lanes.pedal.try_push({.kind = PedalEventKind::capture, .unit = 1, .at = at_ms(50)});
+    if (ms % 33 == 0) (void)lanes.frames.try_push(frame_at(at_ms(ms), static_cast<std::uint32_t>(ms / 33)));
+    (void)stage.step(at_ms(ms));
+    for (const Selection& one : all_of(lanes.selected)) {
+      if (told_rad != nullptr) *told_rad = one.matched.turn_rad;
+      return one.matched.refusal;
+    }
+    for (const PaintOrder& order : all_of(lanes.orders))
+      if (order.kind == PaintOrderKind::fail) return order.refusal;
+  }
+  return Refusal::no_frame;
+}
+
+TEST(SyncStageTurn, IsToldByTheSecondMarkerUnlessThatOneWasBent) {
+  double told = 0;
+  EXPECT_EQ(refusal_with(-1.2, 0, &told), Refusal::none);
+  EXPECT_NEAR(told, -1.2, 1e-9);
+  EXPECT_EQ(refusal_with(-1.2, 0.07), Refusal::none);
+  EXPECT_EQ(refusal_with(-1.2, 0.1), Refusal::turn_unknown);
 }
 
 }  // namespace
