@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include <ceres/ceres.h>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <opencv2/imgproc.hpp>
@@ -191,6 +192,47 @@ Result<void> fit_axis(const std::vector<TurnSight>& sights, const TurningTask& t
   return {};
 }
 
+Eigen::Matrix3d between_markers(const TurnSight& sight) {
+  return sight.X_TS->rotation.transpose() * sight.X_TL->rotation;
+}
+
+/// With the marker on the shaft, the axis that the second one, on the head, turns about: what its rotations
+/// in S leave fixed.
+void fit_axis_by_second(const std::vector<TurnSight>& sights, const TurningTask& task, TurningFit& fit) {
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
+  for (std::size_t a = 0; a < sights.size(); ++a)
+    for (std::size_t b = a + 1; b < sights.size(); ++b) {
+      const Eigen::Matrix3d moved =
+          between_markers(sights[b]) * between_markers(sights[a]).transpose() - Eigen::Matrix3d::Identity();
+      turned += moved.transpose() * moved;
+    }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solved(turned);
+  fit.turning.axis = solved.eigenvectors().col(0);
+  if (fit.turning.axis.dot(task.view_S) < 0) fit.turning.axis = -fit.turning.axis;
+}
+
+/// Where the second marker is at turn 0: the mean of what each picture says, its turn taken off.
+Result<void> fit_second(const std::vector<TurnSight>& sights, TurningFit& fit) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  Turning& turning = fit.turning;
+  for (std::size_t k = 0; k < sights.size(); ++k)
+    sum += second_marker_at(turning, -fit.turns_rad[k]) *
+           between_markers(sights[k]);  // no R_SL yet: the turn alone
+  turning.R_SL = nearest_rotation(sum).rotation;
+  double squares = 0;
+  for (std::size_t k = 0; k < sights.size(); ++k) {
+    const MarkedTurn told = turn_of(turning, between_markers(sights[k]));
+    squares += std::pow(wrapped(told.turn_rad - fit.turns_rad[k]), 2) + std::pow(told.swing_rad, 2);
+  }
+  fit.second_rms_rad = std::sqrt(squares / static_cast<double>(sights.size()));
+  if (fit.second_rms_rad <= kMarkerAgrees_rad) return {};
+  return fail(
+      json::format("the second marker turns otherwise than the picture, by %.1f degrees RMS (%.1f are "
+                   "accepted): it is not on "
+                   "the other side of the coupler, it moved on its part, or --marker is the other way round",
+                   degrees(fit.second_rms_rad), degrees(kMarkerAgrees_rad)));
+}
+
 /// Where turn 0 is, by the notch where passport and pictures have one.
 void set_zero(const std::vector<TurnSight>& sights, const TurningTask& task, TurningFit& fit) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -249,8 +291,12 @@ Result<TurningFit> fit_turning(const std::vector<TurnSight>& sights, const Turni
                  .marker = task.marker};
   if (task.marker == TurnMarker::head)
     if (auto axis = fit_axis(sights, task, fit); !axis) return tl::unexpected(axis.error());
+  const bool second = std::ranges::all_of(sights, [](const TurnSight& s) { return s.X_TS && s.X_TL; });
+  if (second && task.marker == TurnMarker::shaft) fit_axis_by_second(sights, task, fit);
   set_zero(sights, task, fit);
   for (double& turn : fit.turns_rad) turn = wrapped(turn);
+  if (second)
+    if (auto found = fit_second(sights, fit); !found) return tl::unexpected(found.error());
   return fit;
 }
 

@@ -16,7 +16,8 @@ namespace orcart {
 struct TurnSight {
   std::string name;
   std::vector<BoardCorner> corners;
-  std::optional<Pose<T, S>> X_TS;   ///< marker on the head: where it was
+  std::optional<Pose<T, S>> X_TS;   ///< marker on the head, or with a second one: where it was
+  std::optional<Pose<T, L>> X_TL;   ///< second marker, on whichever of shaft and head S is not on; needs X_TS
   std::optional<double> notch_rad;  ///< as found in the picture
 };
 
@@ -28,6 +29,7 @@ struct TurningFit {
   double range_rad = 0;                  ///< the largest turn between two pictures
   double axis_rms_mm = 0;                ///< head: of the marker about its circle
   double angle_rms_rad = 0;              ///< head: of the marker's turns about the pictures'
+  double second_rms_rad = 0;             ///< second marker: of its turns about the pictures'
   double notch_rms_rad = 0;              ///< of the notch about the pictures' turns, where it is found
   std::optional<double> notch_zero_rad;  ///< where the notch is at turn 0
   std::vector<std::string> notes;
@@ -47,13 +49,16 @@ struct TurningTask {
 ///
 /// Refuses fewer than three pictures, turns of less than 40 degrees in all, a centre that is known worse than
 /// to a pixel, corners that do not go round one centre (scope or board moved), and a marker that does not
-/// turn as the picture does.
+/// turn as the picture does. Where every sight has both markers, turning gets R_SL.
 Result<TurningFit> fit_turning(const std::vector<TurnSight>& sights, const TurningTask& task);
 
 struct TurningCommand {
   std::vector<std::filesystem::path> images;
   Pattern pattern;
-  std::filesystem::path poses;  ///< marker on the head; empty: on the shaft
+  std::filesystem::path
+      poses;  ///< of the scope's marker on the head, or with second_poses; empty: on the shaft
+  std::filesystem::path second_poses;    ///< of a second marker; empty: there is none
+  TurnMarker marker = TurnMarker::head;  ///< with second_poses: where the scope's own marker sits
   double view_angle_rad = 0;
 };
 struct TurningCalibration {

@@ -23,15 +23,20 @@ double degrees(double rad) {
 
 Result<TurningCalibration> calibrate_turning(const TurningCommand& command, const ScopeModel& scope,
                                              const Progress& progress) {
-  std::vector<Pose<T, S>> X_TS;
+  std::vector<Pose<T, S>> X_TS, second;
   TurningCalibration result{.scope = scope};
-  if (!command.poses.empty()) {
-    const auto poses = read_poses(command.poses);
-    if (!poses) return tl::unexpected(poses.error());
-    result.notes = poses->notes;
-    auto paired = poses_of_pictures(command.images, *poses, command.poses);
+  if (!command.second_poses.empty() && command.poses.empty())
+    return fail(
+        "a second marker's poses stand alone; the scope's own marker's are needed beside them (--poses)");
+  for (const auto& [file, poses] :
+       {std::pair{&command.poses, &X_TS}, std::pair{&command.second_poses, &second}}) {
+    if (file->empty()) continue;
+    const auto read = read_poses(*file);
+    if (!read) return tl::unexpected(read.error());
+    result.notes.insert(result.notes.end(), read->notes.begin(), read->notes.end());
+    auto paired = poses_of_pictures(command.images, *read, *file);
     if (!paired) return tl::unexpected(paired.error());
-    X_TS = std::move(*paired);
+    *poses = std::move(*paired);
   }
   const auto seen = see_boards(command.images, command.pattern, progress);
   if (!seen) return tl::unexpected(seen.error());
@@ -52,11 +57,13 @@ Result<TurningCalibration> calibrate_turning(const TurningCommand& command, cons
     cv::cvtColor(seen->pictures[i], grey, cv::COLOR_BGR2GRAY);
     TurnSight sight{.name = name, .corners = view.corners, .notch_rad = find_mask(grey, aspect).notch_rad};
     if (!X_TS.empty()) sight.X_TS = X_TS[i];
+    if (!second.empty())
+      sight.X_TL = Pose<T, L>{.rotation = second[i].rotation, .translation_mm = second[i].translation_mm};
     result.sights.push_back(std::move(sight));
   }
   auto fit = fit_turning(result.sights, {.aspect = aspect,
                                          .view_angle_rad = command.view_angle_rad,
-                                         .marker = X_TS.empty() ? TurnMarker::shaft : TurnMarker::head,
+                                         .marker = X_TS.empty() ? TurnMarker::shaft : command.marker,
                                          .view_S = scope.X_SC.rotation.col(2),
                                          .passport_notch_rad = scope.notch_rad});
   if (!fit) return tl::unexpected(fit.error());
@@ -85,6 +92,9 @@ std::string turning_text(const TurningCalibration& c) {
   if (c.fit.notch_zero_rad)
     out += json::format("  notch at %.2f degrees at turn 0; it tells a turn to %.3f degrees RMS\n",
                         degrees(*c.fit.notch_zero_rad), degrees(c.fit.notch_rms_rad));
+  if (t.R_SL)
+    out += json::format("second marker: its turns agree with the pictures' to %.3f degrees RMS\n",
+                        degrees(c.fit.second_rms_rad));
   for (std::size_t i = 0; i < c.sights.size(); ++i)
     out += json::format("  %-32s turn %8.3f degrees  %4zu corners  %.3f px%s\n", c.sights[i].name.c_str(),
                         degrees(c.fit.turns_rad[i]), c.sights[i].corners.size(), c.fit.each_px[i],
@@ -108,6 +118,7 @@ std::string turning_json(const TurningCalibration& c) {
          ", \"axis\": " + json::numbers(t.axis) + ", \"axis_point_mm\": " + json::numbers(t.axis_point_mm) +
          ", \"axis_rms_mm\": " + json::number(c.fit.axis_rms_mm) +
          ", \"angle_rms_rad\": " + json::number(c.fit.angle_rms_rad) +
+         ", \"second_rms_rad\": " + json::number(t.R_SL ? c.fit.second_rms_rad : NAN) +
          ",\n \"notch_zero_rad\": " + json::number(c.fit.notch_zero_rad.value_or(NAN)) +
          ", \"notch_rms_rad\": " + json::number(c.fit.notch_rms_rad) +
          ",\n \"pictures\": " + json::list(pictures) + ",\n \"notes\": " + json::list(notes) + "}\n";

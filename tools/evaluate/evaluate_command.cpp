@@ -77,6 +77,7 @@ class Evaluator {
   Result<void> compare_recorded(EvaluationReport& report) {
     const auto file = read_views(command_.views);
     if (!file) return tl::unexpected(file.error());
+    if (auto still = check_still(file->views, command_.views); !still) return still;
     RandomStream random(command_.simulation.seed, 2'000'000);
     const auto fiducials = fiducials_of_chance(scene_, model().fiducials, random);
     std::optional<TakenPicture> before;

@@ -43,12 +43,14 @@ int run(const Arguments& arguments) {
   const double turn_deg = report->turn_rad * 180 / std::numbers::pi;
   const std::string out = arguments.command.out.string();
   if (arguments.json) {
-    std::printf("{\"captures\": %zu, \"undone\": %zu, \"turn_deg\": %.4f, \"out\": %s}\n", report->captures,
-                report->undone, turn_deg, json::text(out).c_str());
+    std::printf("{\"captures\": %zu, \"undone\": %zu, \"turn_deg\": %.4f, \"turned\": %s, \"out\": %s}\n",
+                report->captures, report->undone, turn_deg, report->turned ? "true" : "false",
+                json::text(out).c_str());
     return 0;
   }
   std::printf("%zu captures (%zu more were undone): %s\n", report->captures, report->undone, out.c_str());
   if (turn_deg != 0) std::printf("scope.toml is turned by %.1f degrees, as the light post was\n", turn_deg);
+  if (report->turned) std::printf("views.csv tells how far the light post was turned in each picture\n");
   return 0;
 }
 

@@ -132,6 +132,9 @@ Result<Inputs> read_inputs(const Arguments& arguments) {
   auto views = read_views(arguments.views);
   if (!views) return tl::unexpected(views.error());
   warn(views->notes);
+  const bool turns = std::ranges::any_of(views->views, [](const View& view) { return view.turn_rad != 0; });
+  if (turns && !scope->turning)
+    return fail(arguments.views + ": has turns, but " + arguments.scope + " has no [turning]");
   return Inputs{std::move(*surface), std::move(*scope), std::move(views->views)};
 }
 
@@ -145,7 +148,7 @@ Result<std::size_t> paint_views(OfflinePainter& painter, const Inputs& inputs, c
     bar.show(i);
     auto picture = read_picture(view.image);
     if (!picture) return tl::unexpected(picture.error());
-    const auto painted = painter.paint(picture->descriptor(), view.X_MC);
+    const auto painted = painter.paint(picture->descriptor(), view.X_MC, view.turn_rad);
     if (!painted) return fail(view.image.string() + ": " + painted.error().message);
     if (painted->triangles > 0) continue;
     ++without_paint;

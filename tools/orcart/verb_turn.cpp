@@ -1,5 +1,6 @@
 // orcart calibrate turn and orcart turn: scopes whose light post turns against the camera head.
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <numbers>
 
@@ -21,7 +22,10 @@ constexpr const char* kCalibrateExample =
     "  orcart calibrate turn turn-*.png --poses head.csv --pattern ... --scope scope.toml --angle 30\n\n"
     "Clamp the scope before a board and turn the camera head alone, all round; three pictures or more. "
     "--poses "
-    "belongs to a marker on\nthe head; without, the marker sits on the shaft. The first picture is at the "
+    "belongs to a marker on\nthe head; without, the marker sits on the shaft. With --second-poses, of a "
+    "marker on "
+    "the other side of the coupler, the cart can\nfollow the turn while it runs ([scope] turn = "
+    "\"marker\"); a notch that the pictures show serves turn = \"notch\". The first picture is at the "
     "turn of "
     "the passport unless both show a notch.\nThe passport is written back with [turning] unless --out names "
     "another.";
@@ -94,6 +98,14 @@ void add_turning(CLI::App& calibrate_verb, int& exit_code) {
   verb->add_option("--pattern", arguments->pattern, "as for `orcart calibrate camera`")->required();
   verb->add_option("--scope", arguments->scope, "the scope's passport")->required();
   verb->add_option("--poses", arguments->command.poses, "poses of a marker on the camera head");
+  verb->add_option(
+      "--second-poses", arguments->command.second_poses,
+      "poses of a second marker, on the other side of the coupler: the cart follows the turn by it");
+  verb->add_option(
+          "--marker", arguments->command.marker,
+          "with --second-poses, where the scope's own marker (--poses) sits: head (default) or shaft")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, TurnMarker>{{"head", TurnMarker::head}, {"shaft", TurnMarker::shaft}}));
   verb->add_option("--angle", arguments->angle_deg, "degrees between view and shaft, as engraved")
       ->check(CLI::Range(0.0, 120.0))
       ->required();

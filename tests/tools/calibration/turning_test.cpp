@@ -232,5 +232,52 @@ TEST(Turning, IsToldByTheNotchToATenthOfADegree) {
   EXPECT_FALSE(turn_by_notch(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(120)), passport));
 }
 
+/// The same sights with a second marker on the other side of the coupler: R_SL says where it is at turn 0.
+std::vector<TurnSight> with_second(std::vector<TurnSight> sights, const RealScope& real,
+                                   const std::vector<double>& turns_deg, const Eigen::Matrix3d& R_SL) {
+  for (std::size_t k = 0; k < sights.size(); ++k) {
+    if (!sights[k].X_TS) sights[k].X_TS = real.marker_at(clamped(), turns_deg[k] * kDegree);
+    const double about_axis = (real.marker == TurnMarker::head ? 1 : -1) * turns_deg[k] * kDegree;
+    Pose<T, L> X_TL;
+    X_TL.rotation =
+        sights[k].X_TS->rotation * Eigen::AngleAxisd(about_axis, real.axis).toRotationMatrix() * R_SL;
+    sights[k].X_TL = X_TL;
+  }
+  return sights;
+}
+
+class EveryMarker : public ::testing::TestWithParam<TurnMarker> {};
+
+TEST_P(EveryMarker, WithASecondOneTellsTheTurnThatThePicturesTell) {
+  const RealScope real = real_scope(30, GetParam());
+  const std::vector<double> turns{0, 50, 110, 170, -125, -60};
+  const Eigen::Matrix3d R_SL =
+      Eigen::AngleAxisd(2.2, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  const auto sights = with_second(sights_of(real, turns, {}), real, turns, R_SL);
+  const auto fit = fit_turning(sights, task_for(real, 30));
+  ASSERT_TRUE(fit) << fit.error().message;
+  ASSERT_TRUE(fit->turning.R_SL);
+  EXPECT_TRUE(fit->turning.R_SL->isApprox(R_SL, 1e-6));
+  EXPECT_LT((fit->turning.axis - real.axis).norm(), 1e-6);
+  EXPECT_LT(fit->second_rms_rad, 1e-6);
+  for (const double turn_deg : {-140.0, 25.0, 77.0}) {
+    const auto now = with_second(sights_of(real, {turn_deg}, {}), real, {turn_deg}, R_SL).front();
+    const MarkedTurn told = turn_of(fit->turning, now.X_TS->rotation.transpose() * now.X_TL->rotation);
+    EXPECT_NEAR(told.turn_rad, turn_deg * kDegree, 1e-6);
+  }
+}
+
+TEST_P(EveryMarker, WithASecondOneThatDoesNotTurnIsRefused) {
+  const RealScope real = real_scope(30, GetParam());
+  const std::vector<double> turns{0, 50, 110, 170};
+  auto sights = with_second(sights_of(real, turns, {}), real, turns, Eigen::Matrix3d::Identity());
+  for (TurnSight& sight : sights) sight.X_TL->rotation = sight.X_TS->rotation;
+  const auto fit = fit_turning(sights, task_for(real, 30));
+  ASSERT_FALSE(fit);
+  EXPECT_NE(fit.error().message.find("the second marker turns otherwise"), std::string::npos)
+      << fit.error().message;
+}
+INSTANTIATE_TEST_SUITE_P(Turning, EveryMarker, ::testing::Values(TurnMarker::shaft, TurnMarker::head));
+
 }  // namespace
 }  // namespace orcart

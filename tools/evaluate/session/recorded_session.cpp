@@ -3,6 +3,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "firmware-host/files/whole_file.hpp"
 #include "realtime/optics/scope_turn.hpp"
 
@@ -94,6 +96,10 @@ Result<RecordedSession> RecordedSession::open(const std::filesystem::path& file)
     }
   }
   return session;
+}
+
+bool RecordedSession::turned_on_the_way() const {
+  return std::ranges::any_of(captures_, [](const StoredCapture& c) { return c.facts.turn_rad != 0; });
 }
 
 Result<TakenPicture> RecordedSession::taken(const StoredCapture& capture) {

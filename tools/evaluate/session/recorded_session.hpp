@@ -16,6 +16,8 @@ class RecordedSession {
   /// The passport at the turn of the light post that the session was made with.
   const ScopeModel& scope() const { return scope_; }
   double turn_rad() const { return turn_rad_; }
+  /// The light post was turned during the session as well: each capture has its own turn since scope()'s.
+  bool turned_on_the_way() const;
   const RegistrationFile& registration() const { return registration_; }
   const std::string& surface_hash() const { return surface_hash_; }
   /// In the order of painting, those that were undone left out.

@@ -104,6 +104,9 @@ Result<SessionReport> evaluate_session(const SessionCommand& command, const Eval
   if (session->captures().size() < 2)
     return fail(command.session.string() + ": holds " + std::to_string(session->captures().size()) +
                 " captures that were not undone; two or more are accepted");
+  if (session->turned_on_the_way())
+    return fail(command.session.string() +
+                ": the scope's light post was turned while it ran; captures at one turn are accepted");
   auto rays = RayScene::create(surface->mesh);
   if (!rays) return tl::unexpected(rays.error());
   auto scope_markers = markers_of_body(command.scope_rom),

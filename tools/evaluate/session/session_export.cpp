@@ -7,6 +7,7 @@
 
 #include "board/sim/picture_png.hpp"
 #include "firmware-host/files/whole_file.hpp"
+#include "realtime/optics/scope_turn.hpp"
 #include "tools/evaluate/session/recorded_session.hpp"
 #include "tools/registration/json_text.hpp"
 
@@ -15,19 +16,20 @@ namespace orcart {
 namespace {
 
 template <class A, class B>
-std::string line_of(const std::string& name, const Pose<A, B>& X) {
+std::string line_of(const std::string& name, const Pose<A, B>& X, const std::string& rest = "") {
   std::string line = name;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column)
       line += json::format(",%.17g", column < 3 ? X.rotation(row, column) : X.translation_mm[row]);
-  return line + "\n";
+  return line + rest + "\n";
 }
 
 Result<void> write_files(RecordedSession& session, const std::filesystem::path& folder,
                          const EvaluateProgress& progress) {
   const Pose<R, M> X_RM = session.registration().X_MR.inverse();
-  const Pose<C, S> X_CS = session.scope().X_SC.inverse();
-  std::string views = "image,m00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23\n", poses;
+  const bool turned = session.turned_on_the_way();
+  std::string views = "image,m00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23", poses;
+  views += turned ? ",turn_rad\n" : "\n";
   const auto& captures = session.captures();
   for (std::size_t i = 0; i < captures.size(); ++i) {
     progress("writing pictures", static_cast<double>(i) / static_cast<double>(captures.size()));
@@ -36,8 +38,9 @@ Result<void> write_files(RecordedSession& session, const std::filesystem::path& 
     if (!picture) return tl::unexpected(picture.error());
     if (auto written = write_picture_png(folder / name, picture->descriptor()); !written) return written;
     const Pose<M, C>& X_MC = captures[i].facts.X_MC;
-    views += line_of(name, X_MC);
-    poses += line_of(name, X_RM * X_MC * X_CS);
+    const double turn_rad = captures[i].facts.turn_rad;
+    views += line_of(name, X_MC, turned ? json::format(",%.17g", turn_rad) : "");
+    poses += line_of(name, X_RM * X_MC * optics_at(session.scope(), turn_rad).X_SC.inverse());
   }
   if (auto written = write_whole_file(folder / "views.csv", views); !written) return written;
   if (auto written = write_whole_file(folder / "poses.csv", poses); !written) return written;
@@ -68,8 +71,10 @@ Result<ExportReport> export_session(const ExportCommand& command, const Evaluate
     std::filesystem::remove_all(scratch, trouble);
     return tl::unexpected(written.error());
   }
-  return ExportReport{
-      .captures = session->captures().size(), .undone = session->undone(), .turn_rad = session->turn_rad()};
+  return ExportReport{.captures = session->captures().size(),
+                      .undone = session->undone(),
+                      .turn_rad = session->turn_rad(),
+                      .turned = session->turned_on_the_way()};
 }
 
 }  // namespace orcart

@@ -76,6 +76,7 @@ Result<ErrorMapReport> make_error_map(const ErrorMapCommand& command, const Eval
   if (!reference_markers) return tl::unexpected(reference_markers.error());
   const auto views = read_views(command.views);
   if (!views) return tl::unexpected(views.error());
+  if (auto still = check_still(views->views, command.views); !still) return tl::unexpected(still.error());
   auto rays = RayScene::create(surface->mesh);
   if (!rays) return tl::unexpected(rays.error());
   const EvaluationScene scene{.mesh = surface->mesh,

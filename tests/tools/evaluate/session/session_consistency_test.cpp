@@ -1,6 +1,7 @@
 // Sessions written as a cart writes them: captures in their place, a reference that slips on the way,
 // captures that were undone.
 #include "tools/evaluate/session/session_consistency.hpp"
+#include "realtime/optics/scope_turn.hpp"
 
 #include <gtest/gtest.h>
 
@@ -70,6 +71,7 @@ class SessionConsistency : public ::testing::Test {
     int number = 0;
     double wrong_mm = 0;  ///< believed so far beside the truth, along x
     bool undone = false;
+    double turn_rad = 0;
   };
 
   std::filesystem::path write_session(const std::vector<Taken>& all) {
@@ -90,6 +92,7 @@ class SessionConsistency : public ::testing::Test {
       frame.exposure_start = instant_from_nanos(10'000'000'000LL * unit);
       facts.X_MC = pose(taken.number);
       facts.X_MC.translation_mm.x() += taken.wrong_mm;
+      facts.turn_rad = taken.turn_rad;
       EXPECT_TRUE(slots.offer(frame, facts));
       if (taken.undone) {
         EXPECT_TRUE(slots.undone(unit));
@@ -212,6 +215,37 @@ TEST_F(SessionConsistency, ASessionIsExportedAsFilesThatOtherVerbsRead) {
   EXPECT_LT((back.translation_mm - believed.translation_mm).norm(), 1e-6);
   EXPECT_LT((back.rotation - believed.rotation).norm(), 1e-9);
   EXPECT_EQ(registration->surface_hash, hash_);
+}
+
+TEST_F(SessionConsistency, AScopeThatTurnedIsExportedWithItsTurnsAndNotComparedThroughOneLens) {
+  const auto scope_file = folder_ / "scope.toml";
+  auto angled = read_scope(scope_file).value();
+  angled.turning = Turning{.centre_px = {150, 110}, .axis = {0, 0.6, 0.8}, .axis_point_mm = {5, 0, 0}};
+  angled.turning->marker = TurnMarker::head;
+  ASSERT_TRUE(write_scope(scope_file, angled));
+  const auto session = write_session({{.number = 0}, {.number = 1, .turn_rad = 0.5}});
+  const auto refused = evaluated(command(session));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("turned while it ran"), std::string::npos)
+      << refused.error().message;
+
+  const auto report =
+      export_session({.session = session, .out = folder_ / "out"}, [](const std::string&, double) {});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_TRUE(report->turned);
+  const auto views = read_views(folder_ / "out/views.csv");
+  ASSERT_TRUE(views) << views.error().message;
+  EXPECT_EQ(views->views[0].turn_rad, 0);
+  EXPECT_EQ(views->views[1].turn_rad, 0.5);
+  const auto poses = read_poses(folder_ / "out/poses.csv");
+  ASSERT_TRUE(poses) << poses.error().message;
+  const auto scope = read_scope(folder_ / "out/scope.toml").value();
+  EXPECT_EQ(scope.lens.cx_px, angled.lens.cx_px) << "as calibrated: each view brings its turn";
+  const Pose<R, S> X_RS{.rotation = poses->poses[1].X_TS.rotation,
+                        .translation_mm = poses->poses[1].X_TS.translation_mm};
+  const Pose<M, C> back =
+      read_registration(folder_ / "out/registration.toml")->X_MR * X_RS * optics_at(scope, 0.5).X_SC;
+  EXPECT_LT((back.translation_mm - views->views[1].X_MC.translation_mm).norm(), 1e-6);
 }
 
 TEST_F(SessionConsistency, AnExportIsWholeOrNotThere) {
