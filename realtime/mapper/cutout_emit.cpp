@@ -309,39 +309,47 @@ bool emit_into_mesh(const ClusterTree::Arrays& tree, CutoutProgress& progress, C
   return done;
 }
 
-/// Appends clusters to the ranges, in the tree's order.
-class RangeWriter {
- public:
-  RangeWriter(const ClusterTree::Arrays& tree, CutoutRanges& out)
-      : tree_(tree), out_(out), to_(out.ranges.data()) {}
-  HWY_INLINE void add(std::uint32_t first_cluster, std::uint32_t end_cluster) {
-    constexpr auto kFull = static_cast<std::uint32_t>(ClusterTree::kMaxTriangles);
-    const std::uint32_t first = first_cluster * kFull,
-                        end = std::min(end_cluster * kFull, tree_.triangle_count);
-    if (first == open_end_)
-      to_[-1].count += end - first;
-    else
-      *to_++ = {.first = first, .count = end - first};
-    open_end_ = end;
-    triangles_ += end - first;
+/// Sets the bits of clusters [first, end).
+HWY_INLINE void mark(std::uint64_t* hit, std::uint32_t first, std::uint32_t end) {
+  for (std::uint32_t at = first; at < end;) {
+    const std::uint32_t bit = at % 64, length = std::min(64 - bit, end - at);
+    hit[at / 64] |= ~std::uint64_t{0} >> (64 - length) << bit;
+    at += length;
   }
-  void finish() {
-    out_.count = static_cast<std::uint32_t>(to_ - out_.ranges.data());
-    out_.triangles = triangles_;
+}
+
+/// A range from each bit that begins a run to the one that ends it: a branch a range, none a cluster.
+HWY_INLINE void ranges_of_marks(const ClusterTree::Arrays& tree, CutoutRanges& out) {
+  constexpr auto kFull = static_cast<std::uint32_t>(ClusterTree::kMaxTriangles);
+  TriangleRange* to = out.ranges.data();
+  std::uint32_t triangles = 0, first = 0;
+  bool open = false;
+  std::uint64_t before = 0;
+  for (std::size_t word = 0; word < out.hit.size(); ++word) {
+    const std::uint64_t bits = out.hit[word];
+    for (std::uint64_t turns = bits ^ (bits << 1 | before); turns != 0; turns &= turns - 1) {
+      const std::uint32_t cluster =
+          static_cast<std::uint32_t>(64 * word) + static_cast<std::uint32_t>(__builtin_ctzll(turns));
+      const std::uint32_t at = std::min(cluster * kFull, tree.triangle_count);
+      *to = {.first = first, .count = at - first};
+      triangles += open ? at - first : 0;
+      to += open ? 1 : 0;
+      first = at;
+      open = !open;
+    }
+    before = bits >> 63;
   }
+  out.count = static_cast<std::uint32_t>(to - out.ranges.data());
+  out.triangles = triangles;
+}
 
- private:
-  const ClusterTree::Arrays& tree_;
-  CutoutRanges& out_;
-  TriangleRange* to_;
-  std::uint32_t triangles_ = 0, open_end_ = ~0U;
-};
-
-/// At most a range a cluster. A node whose places are clusters is not entered: its hits are runs of bits.
+/// At most a range a cluster. A node whose places are clusters is not entered: its hits are eight bits of the
+/// marks.
 void collect_into_ranges(const ClusterTree::Arrays& tree, ConeWalk& walk, CutoutRanges& out) {
   const ConeNumbers& cone = walk.cone();
   ConeWalkFrames& frames = walk.frames();
-  RangeWriter ranges(tree, out);
+  std::uint64_t* hit = out.hit.data();
+  std::fill(out.hit.begin(), out.hit.end(), std::uint64_t{0});
   while (frames.size > 0) {
     ConeWalkFrames::Frame& frame = frames.frame[frames.size - 1];
     if (frame.hit == 0) {
@@ -353,25 +361,16 @@ void collect_into_ranges(const ClusterTree::Arrays& tree, ConeWalk& walk, Cutout
     const ClusterTree::Node& node = tree.nodes[frame.node];
     const std::uint32_t first = node.cluster[place], end = node.cluster[place + 1];
     if ((frame.inside >> place & 1U) != 0 || end - first == 1) {
-      ranges.add(first, end);
+      mark(hit, first, end);
       continue;
     }
     const ClusterTree::Node& child = tree.nodes[node.child[place]];
-    if (!is_lowest(child)) {
+    if (is_lowest(child))  // which begins at a multiple of eight clusters
+      hit[first / 64] |= std::uint64_t{meets_of(child, cone, nullptr).hit} << first % 64;
+    else
       enter_node<false>(tree.nodes, node.child[place], cone, false, frames);
-      continue;
-    }
-    std::uint32_t hit = meets_of(child, cone, nullptr).hit;
-    for (std::uint32_t at = first; hit != 0;) {
-      const auto skipped = static_cast<std::uint32_t>(__builtin_ctz(hit));
-      hit >>= skipped;
-      const auto length = static_cast<std::uint32_t>(__builtin_ctz(~hit));
-      hit >>= length;
-      ranges.add(at + skipped, at + skipped + length);
-      at += skipped + length;
-    }
   }
-  ranges.finish();
+  ranges_of_marks(tree, out);
 }
 
 }  // namespace orcart::HWY_NAMESPACE

@@ -46,8 +46,9 @@ struct TriangleRange {
 struct CutoutRanges {
   std::vector<TriangleRange> ranges;  ///< as CutoutMesh: `count` of them are valid
   std::uint32_t count = 0, triangles = 0;
+  std::vector<std::uint64_t> hit;  ///< scratch: a bit a cluster
 
-  explicit CutoutRanges(std::size_t cluster_count) : ranges(cluster_count) {}
+  explicit CutoutRanges(std::size_t cluster_count) : ranges(cluster_count), hit(cluster_count / 64 + 1) {}
 };
 
 }  // namespace orcart

@@ -277,8 +277,11 @@ TEST(Cutout, CarriesWhatExceedsItsRoomAndLosesNothing) {
   }
 }
 
-TEST(Cutout, RangesHoldEveryTriangleOfTheConeOnce) {
-  const Scene scene(testing::icosphere(30, 5));
+/// On a tree of one cluster, of one level, and of several.
+class CutoutRangesOfAll : public ::testing::TestWithParam<int> {};
+
+TEST_P(CutoutRangesOfAll, HoldEveryTriangleOfTheConeOnce) {
+  const Scene scene(testing::icosphere(30, GetParam()));
   Cutout cutout = scene.cutout();
   CutoutRanges ranges(scene.tree.cluster_count());
   std::mt19937 random(6);
@@ -300,6 +303,7 @@ TEST(Cutout, RangesHoldEveryTriangleOfTheConeOnce) {
     EXPECT_TRUE(std::includes(all.begin(), all.end(), view.triangles.begin(), view.triangles.end(), before));
   }
 }
+INSTANTIATE_TEST_SUITE_P(Levels, CutoutRangesOfAll, ::testing::Values(0, 2, 3, 5));
 
 TEST(Cutout, StandsATipInAVertexInAnEdgeAndInATriangle) {
   const Scene scene(testing::icosphere(25, 3));
