@@ -38,8 +38,13 @@ Eigen::Matrix<double, kLensNumbers, kLensNumbers> numbers_going_round(const Lens
 }  // namespace
 
 TurnedOptics optics_at(const ScopeModel& scope, double turn_rad) noexcept {
-  TurnedOptics optics{.lens = scope.lens, .mask = scope.mask, .X_SC = scope.X_SC, .X_CE = scope.X_CE};
+  TurnedOptics optics{.lens = scope.lens,
+                      .mask = scope.mask,
+                      .X_SC = scope.X_SC,
+                      .X_CE = scope.X_CE,
+                      .notch_rad = scope.notch_rad};
   if (!scope.turning) return optics;
+  if (optics.notch_rad) optics.notch_rad = std::remainder(*optics.notch_rad + turn_rad, 2 * M_PI);
   const Eigen::Vector2d middle = round_centre(scope, {scope.lens.cx_px, scope.lens.cy_px}, turn_rad);
   optics.lens.cx_px = middle.x(), optics.lens.cy_px = middle.y();
   if (scope.lens.model == LensModel::poly4)
@@ -91,7 +96,7 @@ ScopeModel turned(const ScopeModel& scope, double turn_rad) {
   at.mask = optics.mask;
   at.X_SC = optics.X_SC;
   at.X_CE = optics.X_CE;
-  if (scope.turning && at.notch_rad) at.notch_rad = std::remainder(*at.notch_rad + turn_rad, 2 * M_PI);
+  at.notch_rad = optics.notch_rad;
   if (scope.turning && scope.turning->R_SL) at.turning->R_SL = second_marker_at(*scope.turning, turn_rad);
   return at;
 }

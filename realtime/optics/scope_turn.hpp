@@ -1,6 +1,8 @@
 // An angled scope whose light post turns against the camera head: the passport's optics at any turn.
 #pragma once
 
+#include <optional>
+
 #include "realtime/optics/scope_model.hpp"
 
 namespace orcart {
@@ -11,6 +13,7 @@ struct TurnedOptics {
   CircularMask mask;
   Pose<S, C> X_SC;
   Pose<C, E> X_CE;
+  std::optional<double> notch_rad;  ///< as ScopeModel::notch_rad
 };
 
 /// The optics when the picture has turned by `turn_rad` (from x towards y, in pixels made square) since the

@@ -74,6 +74,7 @@ Result<PaintProgram> PaintProgram::create(const ScopeModel& scope, const Painter
   self.coefficients_ = at("u_coefficients");
   self.distortion_centre_ = at("u_distortion_centre");
   self.circle_ = at("u_circle");
+  self.notch_ = at("u_notch");
   self.picture_ = gles::PictureTexture::uniforms_of(self.program_);
   return self;
 }
@@ -114,6 +115,9 @@ void PaintProgram::set_optics(const TurnedOptics& optics) const noexcept {
   const CircularMask& mask = optics.mask;
   glUniform4f(circle_, narrow(mask.cx_px), narrow(mask.cy_px), narrow(mask.radius_px),
               narrow(std::max(mask.soft_edge_px, 1e-3)));
+  const bool notched = optics.notch_rad.has_value();
+  glUniform2f(notch_, notched ? narrow(std::cos(*optics.notch_rad)) : 0,
+              notched ? narrow(std::sin(*optics.notch_rad)) : 0);
 }
 
 void PaintProgram::use(const PaintView& view, const SurfaceTextures& surface,

@@ -49,7 +49,7 @@ class PaintProgram {
   gles::Program program_;
   GLint rotation_ = -1, translation_ = -1, tip_ = -1, view_ = -1, up_ = -1, side_ = -1, paper_size_ = -1,
         half_width_slope_ = -1, capture_ = -1, view_error_ = -1, light_ = -1, intrinsics_ = -1,
-        coefficients_ = -1, distortion_centre_ = -1, circle_ = -1;
+        coefficients_ = -1, distortion_centre_ = -1, circle_ = -1, notch_ = -1;
   Eigen::Vector2f fall_off_ = Eigen::Vector2f::Zero();  ///< reference mm, power of the vignetting's cosine
   gles::PictureTexture::Uniforms picture_{};
 };

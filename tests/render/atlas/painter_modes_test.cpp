@@ -1,10 +1,12 @@
 // Paper mode against its closed form, a soft mask over older paint, and what a capture may cost the next one.
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
 #include "realtime/mapper/paper_coordinates.hpp"
+#include "realtime/optics/scope_turn.hpp"
 #include "render/atlas/painter.hpp"
 #include "render/egl/context.hpp"
 #include "tests/render/support/scenes.hpp"
@@ -137,6 +139,42 @@ TEST(Painter, BlendsTheSoftRimOverOlderPaint) {
     ++mixed;
   });
   EXPECT_GT(mixed, 200u);
+}
+
+// It is dark in the picture, and would be a black tooth on the surface.
+TEST(Painter, LeavesTheNotchUnpaintedAtEveryTurn) {
+  ScopeModel scope = scenes::scope();
+  scope.notch_rad = 0.7;
+  scope.turning = Turning{.centre_px = {scope.mask.cx_px, scope.mask.cy_px}};
+  for (const double turn_rad : {0.0, 2.0}) {
+    Stage stage(scenes::plane(20, 40, 10), scope);
+    auto picture = scenes::flat(scope, 100, 100, 100);
+    stage.painter->upload(picture.descriptor());
+    stage.painter->set_turn(turn_rad);
+    stage.painter->paint(scenes::whole(stage.surface, {}), 1);
+    const TurnedOptics optics = optics_at(scope, turn_rad);
+    const AtlasPicture atlas = stage.painter->read_back();
+    std::size_t notched = 0, beside = 0;
+    for (std::size_t i = 0; i < stage.layout.owners.size(); ++i) {
+      if (stage.layout.inside[i] == 0) continue;
+      const auto pixel = project(optics.lens, scenes::point_of(stage.surface, stage.layout, i));
+      if (!pixel) continue;
+      const Eigen::Vector2d off(pixel->x() - optics.mask.cx_px,
+                                (pixel->y() - optics.mask.cy_px) * optics.lens.fx_px / optics.lens.fy_px);
+      const double part = off.norm() / scope.mask.radius_px;
+      const double away = std::abs(std::remainder(std::atan2(off.y(), off.x()) - 0.7 - turn_rad, 2 * M_PI));
+      if (part > 0.97 || part < 0.5) continue;
+      if (part > 0.9 && away < 0.08) {
+        EXPECT_EQ(atlas.rgba[4 * i + 3], 0);
+        ++notched;
+      } else if (part < 0.85 || away > 0.13) {
+        EXPECT_NE(atlas.rgba[4 * i + 3], 0);
+        ++beside;
+      }
+    }
+    EXPECT_GT(notched, 20u);
+    EXPECT_GT(beside, 1000u);
+  }
 }
 
 TEST(Painter, PaintsAnObliquePlaneWithoutHidingItFromItself) {
