@@ -71,6 +71,7 @@ Result<Pairs> by_order(const RegistrationTask& task) {
 
 std::vector<Eigen::Vector3d> places(const std::vector<NamedPoint>& points) {
   std::vector<Eigen::Vector3d> result;
+  result.reserve(points.size());
   for (const NamedPoint& p : points) result.push_back(p.mm);
   return result;
 }

@@ -41,6 +41,7 @@ struct Scene {
   }
   std::vector<Triangle> sorted(const std::vector<std::uint32_t>& ids) const {
     std::vector<Triangle> all;
+    all.reserve(ids.size());
     for (const std::uint32_t t : ids) all.push_back(triangle(t));
     std::sort(all.begin(), all.end(), before);
     return all;
