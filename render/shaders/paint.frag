@@ -55,6 +55,8 @@ void main() {
   float level = picture_level(distance_mm, cos_angle);
   if (level > 0.0 && beside_an_edge(p, plane, 1.5 * exp2(level))) level = 0.0;  // rather grainy than of two colours
   vec3 colour = picture_at(pixel, level);
+  weight *= notch_weight(pixel, colour);
+  if (weight <= 0.0) discard;
   weight *= clamp((cos_angle - u_cos_obliquity) * 10.0, 0.004, 1.0);  // no jagged edge from triangle to triangle
   put(evened_out(colour, p, distance_mm, cos_angle), weight, core_weight(pixel), record_of(distance_mm, cos_angle));
 }

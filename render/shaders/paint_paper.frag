@@ -56,5 +56,7 @@ void main() {
   float distance_mm = length(p);
   float cos_angle = clamp(abs(dot(u_rotation_CM * unpacked_normal(point.w), p)) / distance_mm, 0.02, 1.0);
   vec3 colour = picture_at(pixel, picture_level(distance_mm, cos_angle));
+  weight *= notch_weight(pixel, colour);
+  if (weight <= 0.0) discard;
   put(evened_out(colour, p, distance_mm, cos_angle), weight, 1.0, record_of(distance_mm, cos_angle));
 }
