@@ -162,7 +162,8 @@ TEST(Painter, LeavesADarkNotchUnpaintedAtEveryTurn) {
     };
     auto picture = scenes::flat(scope, 100, 100, 100);
     for (int i = 0; each.dark && i < scope.width_px * scope.height_px; ++i) {
-      const Eigen::Vector2d off = off_centre(i % scope.width_px, i / scope.width_px);
+      const int x = i % scope.width_px, y = i / scope.width_px;
+      const Eigen::Vector2d off = off_centre(x, y);
       if (part_of_radius(off) > 0.9 && beside_notch_rad(off) < 0.06)
         std::fill_n(&picture.bytes[4 * static_cast<std::size_t>(i)], 3, std::uint8_t{0});
     }
