@@ -28,17 +28,6 @@ Eigen::Vector3d vector_of(const std::vector<double>& xyz) {
   return {xyz[0], xyz[1], xyz[2]};
 }
 
-/// None of a wired tool, whose definition stays in its own memory.
-std::vector<Eigen::Vector3d> markers_of(const ndi::ToolDefinition& tool) {
-  std::vector<Eigen::Vector3d> markers;
-  markers.reserve(static_cast<std::size_t>(tool.marker_count));
-  for (int i = 0; i < tool.marker_count; ++i) {
-    const auto& marker = tool.markers_mm[static_cast<std::size_t>(i)];
-    markers.emplace_back(marker[0], marker[1], marker[2]);
-  }
-  return markers;
-}
-
 }  // namespace
 
 struct Cart::State {
@@ -122,8 +111,8 @@ Result<void> Cart::State::build_painting() {
 ChainErrors Cart::State::chain_errors(const NdiSettings& driven) const {
   const RegistrationFile& registration = setup.patient.registration;
   return {.marker_rms_mm = setup.config.marker_rms_mm(),
-          .scope_markers_mm = markers_of(driven.tools[0].definition),
-          .reference_markers_mm = markers_of(driven.tools[1].definition),
+          .scope_markers_mm = ndi::markers_of(driven.tools[0].definition),
+          .reference_markers_mm = ndi::markers_of(driven.tools[1].definition),
           .registration = registration.covariance,
           .registration_mm = registration.predicted_tre_mm,
           .time_s = setup.config.time_deviation_s,

@@ -72,21 +72,31 @@ HWY_INLINE bool is_lowest(const ClusterTree::Node& node) {
   return node.cluster[ClusterTree::kWidth] - node.cluster[0] <= ClusterTree::kWidth;
 }
 
-/// The next run in the tree's order. Bound: a node is entered once, a place looked at once.
-HWY_INLINE bool next_run(const ClusterTree::Node* nodes, const ConeNumbers& cone, ConeWalkFrames& walk,
-                         ClusterRun& run) {
+/// The next place of the nodes that were entered, in the tree's order, and its node's frame; null when there
+/// is none.
+HWY_INLINE const ConeWalkFrames::Frame* next_place(ConeWalkFrames& walk, std::size_t& place) {
   while (walk.size > 0) {
     ConeWalkFrames::Frame& frame = walk.frame[walk.size - 1];
     if (frame.hit == 0) {
       --walk.size;
       continue;
     }
-    const auto place = static_cast<std::size_t>(__builtin_ctz(frame.hit));
+    place = static_cast<std::size_t>(__builtin_ctz(frame.hit));
     frame.hit &= frame.hit - 1;
-    const ClusterTree::Node& node = nodes[frame.node];
+    return &frame;
+  }
+  return nullptr;
+}
+
+/// The next run in the tree's order. Bound: a node is entered once, a place looked at once.
+HWY_INLINE bool next_run(const ClusterTree::Node* nodes, const ConeNumbers& cone, ConeWalkFrames& walk,
+                         ClusterRun& run) {
+  std::size_t place = 0;
+  while (const ConeWalkFrames::Frame* frame = next_place(walk, place)) {
+    const ClusterTree::Node& node = nodes[frame->node];
     run.first = node.cluster[place];
     run.end = node.cluster[place + 1];
-    run.inside = (frame.inside >> place & 1U) != 0;
+    run.inside = (frame->inside >> place & 1U) != 0;
     if (run.inside || run.end - run.first == 1) return true;
     enter_node<false>(nodes, node.child[place], cone, false, walk);
   }

@@ -350,17 +350,11 @@ void collect_into_ranges(const ClusterTree::Arrays& tree, ConeWalk& walk, Cutout
   ConeWalkFrames& frames = walk.frames();
   std::uint64_t* hit = out.hit.data();
   std::fill(out.hit.begin(), out.hit.end(), std::uint64_t{0});
-  while (frames.size > 0) {
-    ConeWalkFrames::Frame& frame = frames.frame[frames.size - 1];
-    if (frame.hit == 0) {
-      --frames.size;
-      continue;
-    }
-    const auto place = static_cast<std::size_t>(__builtin_ctz(frame.hit));
-    frame.hit &= frame.hit - 1;
-    const ClusterTree::Node& node = tree.nodes[frame.node];
+  std::size_t place = 0;
+  while (const ConeWalkFrames::Frame* frame = next_place(frames, place)) {
+    const ClusterTree::Node& node = tree.nodes[frame->node];
     const std::uint32_t first = node.cluster[place], end = node.cluster[place + 1];
-    if ((frame.inside >> place & 1U) != 0 || end - first == 1) {
+    if ((frame->inside >> place & 1U) != 0 || end - first == 1) {
       mark(hit, first, end);
       continue;
     }

@@ -6,7 +6,7 @@
 
 #include "tools/evaluate/evaluate_command.hpp"
 #include "tools/evaluate/share_folder.hpp"
-#include "tools/evaluate/stated_errors.hpp"
+#include "tools/orcart/evaluate_options.hpp"
 #include "tools/orcart/verbs.hpp"
 
 namespace orcart {
@@ -108,14 +108,7 @@ void add_evaluate(CLI::App& app, int& exit_code) {
   verb->add_option("--views", command.views,
                    "views.csv: recorded pictures to compare in place of simulated ones");
   verb->add_option("--page", command.page, "a folder for a page with pictures and figures");
-  verb->add_option_function<double>(
-          "--time-deviation-ms",
-          [arguments](double ms) {
-            ErrorModel& model = arguments->command.simulation.model;
-            model = with_time(model, 1e-3 * ms);
-          },
-          "standard deviation of tracker against video, as `orcart calibrate time` tells; 2 is assumed")
-      ->check(CLI::Range(0.0, 100.0));
+  add_time_deviation(*verb, arguments->command.simulation.model);
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   add_evaluate_map(*verb, exit_code);
   add_evaluate_session(*verb, exit_code);

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "tools/evaluate/share_folder.hpp"
-#include "tools/evaluate/stated_errors.hpp"
 #include "tools/evaluate/texels/error_map.hpp"
+#include "tools/orcart/evaluate_options.hpp"
 #include "tools/orcart/verbs.hpp"
 
 namespace orcart {
@@ -85,14 +85,7 @@ void add_evaluate_map(CLI::App& evaluate, int& exit_code) {
             return std::string("a name that ends in .obj, .ply, .glb or .png is accepted");
           },
           "NAME.obj|NAME.ply|NAME.glb|NAME.png"));
-  verb->add_option_function<double>(
-          "--time-deviation-ms",
-          [arguments](double ms) {
-            ErrorModel& model = arguments->command.model;
-            model = with_time(model, 1e-3 * ms);
-          },
-          "standard deviation of tracker against video, as `orcart calibrate time` tells; 2 is assumed")
-      ->check(CLI::Range(0.0, 100.0));
+  add_time_deviation(*verb, arguments->command.model);
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

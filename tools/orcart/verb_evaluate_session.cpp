@@ -6,7 +6,7 @@
 
 #include "tools/evaluate/session/session_consistency.hpp"
 #include "tools/evaluate/share_folder.hpp"
-#include "tools/evaluate/stated_errors.hpp"
+#include "tools/orcart/evaluate_options.hpp"
 #include "tools/orcart/verbs.hpp"
 
 namespace orcart {
@@ -74,14 +74,7 @@ void add_evaluate_session(CLI::App& evaluate, int& exit_code) {
       ->capture_default_str();
   verb->add_option("--seed", command.seed, "the same seed takes the same patches")->capture_default_str();
   verb->add_option("--page", command.page, "a folder for a page with a chart over time");
-  verb->add_option_function<double>(
-          "--time-deviation-ms",
-          [arguments](double ms) {
-            ErrorModel& model = arguments->command.model;
-            model = with_time(model, 1e-3 * ms);
-          },
-          "standard deviation of tracker against video, as `orcart calibrate time` tells; 2 is assumed")
-      ->check(CLI::Range(0.0, 100.0));
+  add_time_deviation(*verb, arguments->command.model);
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -120,4 +120,11 @@ Result<ToolDefinition> read_tool_definition(const std::filesystem::path& file) {
   return parse_tool_definition(std::as_bytes(std::span<const char>{letters}), file.string());
 }
 
+std::vector<Eigen::Vector3d> markers_of(const ToolDefinition& tool) {
+  std::vector<Eigen::Vector3d> markers;
+  for (const auto& [x, y, z] : std::span(tool.markers_mm).first(static_cast<std::size_t>(tool.marker_count)))
+    markers.emplace_back(x, y, z);
+  return markers;
+}
+
 }  // namespace orcart::ndi

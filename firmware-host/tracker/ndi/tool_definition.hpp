@@ -8,6 +8,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "firmware-host/tracker/ndi/command.hpp"
 #include "realtime/base/result.hpp"
@@ -40,5 +43,8 @@ inline constexpr std::size_t kRomFileBytes = 752;
 /// 3 or more than 20 markers, marker positions that are no numbers.
 Result<ToolDefinition> parse_tool_definition(std::span<const std::byte> bytes, std::string_view name);
 Result<ToolDefinition> read_tool_definition(const std::filesystem::path& file);
+
+/// Its markers in the tool's own frame, mm; none of a wired tool, whose definition stays in its own memory.
+std::vector<Eigen::Vector3d> markers_of(const ToolDefinition& tool);
 
 }  // namespace orcart::ndi
