@@ -79,7 +79,7 @@ Pose<T, R> SimulatedWorld::X_TR(Instant at) const noexcept {
 
 double SimulatedWorld::turn_rad(Instant at) const noexcept {
   if (!scope_.turning || script_.turn_rad == 0) return 0;
-  const double turns = seconds(at - start_) / script_.turn_every_s;
+  const double turns = std::max(0.0, seconds(at - start_)) / script_.turn_every_s;
   return script_.turn_rad * (1 - 4 * std::abs(turns + 0.25 - std::floor(turns + 0.25) - 0.5));
 }
 

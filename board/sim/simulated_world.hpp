@@ -35,8 +35,8 @@ class SimulatedWorld final : public ToolMotion {
   TrueToolPose pose_of(int tool, Instant at) const noexcept override;
   Pose<M, C> X_MC(Instant at) const noexcept { return motion_.X_MC(at - start_); }
   Pose<T, R> X_TR(Instant at) const noexcept;
-  /// Of the light post since the turn of the scope's passport: a triangle wave. 0 for a scope without
-  /// [turning].
+  /// Of the light post since the turn of the scope's passport: a triangle wave from the start on. 0
+  /// for a scope without [turning].
   double turn_rad(Instant at) const noexcept;
   /// The registration that is true; a cart's own may differ.
   const Pose<M, R>& X_MR() const noexcept { return X_MR_; }

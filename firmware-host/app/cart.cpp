@@ -3,6 +3,7 @@
 #include "firmware-host/app/cart.hpp"
 
 #include "firmware-host/stages/camera_stage.hpp"
+#include "firmware-host/stages/encoder_stage.hpp"
 #include "firmware-host/stages/mapper_stage.hpp"
 #include "firmware-host/stages/painter_stage.hpp"
 #include "firmware-host/stages/panel_stage.hpp"
@@ -20,8 +21,9 @@ constexpr double kCapturesPerSecond = 10;  // on the average of a long run; more
 
 std::array<StageLedger, kStageCount> ledgers_for(RenderClass render_class) {
   const auto one = [&](StageId id) { return StageLedger(row_of(id).name, budget_of(id, render_class)); };
-  return {one(StageId::pedal),  one(StageId::tracker), one(StageId::camera), one(StageId::sync),
-          one(StageId::mapper), one(StageId::painter), one(StageId::panel),  one(StageId::session)};
+  return {one(StageId::pedal),   one(StageId::encoder), one(StageId::tracker),
+          one(StageId::camera),  one(StageId::sync),    one(StageId::mapper),
+          one(StageId::painter), one(StageId::panel),   one(StageId::session)};
 }
 
 Eigen::Vector3d vector_of(const std::vector<double>& xyz) {
@@ -38,7 +40,8 @@ struct Cart::State {
                .pedal = kPedalQueueDepth,
                .frames = kFrameQueueDepth,
                .orders = kPaintQueueDepth,
-               .patches = kPatchSlots}),
+               .patches = kPatchSlots,
+               .encoder_angles = kEncoderQueueDepth}),
         frames(static_cast<std::size_t>(s.longest_run_s * s.config.camera.rate_hz) + 64),
         captures(static_cast<std::size_t>(s.longest_run_s * kCapturesPerSecond) + 64),
         ledgers(ledgers_for(context.render_class())) {}
@@ -56,6 +59,7 @@ struct Cart::State {
   std::unique_ptr<Screen> screen;
   std::unique_ptr<NdiDriver> driver;
   std::unique_ptr<PedalStage> pedal;
+  std::unique_ptr<EncoderStage> encoder;  ///< null where the turn is not followed by one
   std::unique_ptr<TrackerStage> tracker;
   std::unique_ptr<TrackerWake> tracker_wake;
   std::unique_ptr<NotchSearch> notch;  ///< null where the turn is not followed by it
@@ -133,6 +137,8 @@ void Cart::State::build_stages() {
   const Patient& patient = setup.patient;
   const Nanos tracker_period = period_of(config.tracker.rate_hz);
   pedal = std::make_unique<PedalStage>(setup.ports.pedal, PedalSettings{}, lanes);
+  if (setup.ports.encoder != nullptr)
+    encoder = std::make_unique<EncoderStage>(*setup.ports.encoder, scale_of(config.encoder), lanes);
   tracker = std::make_unique<TrackerStage>(
       *driver,
       ClockFitSettings{.rate_hz = config.tracker.rate_hz,
@@ -148,11 +154,13 @@ void Cart::State::build_stages() {
       lanes, notch.get());
   sync = std::make_unique<SyncStage>(
       SyncStageSettings{
-          .history = {.period = tracker_period, .needs_turn = config.turn == TurnSource::marker},
+          .history = {.period = tracker_period,
+                      .needs_turn = config.turn == TurnSource::marker || config.turn == TurnSource::encoder},
           .matcher = {.turn = config.turn, .tracker_against_video = config.tracker_against_video},
           .selector = {},
           .X_MR = patient.registration.X_MR,
           .scope = patient.scope,
+          .encoder = {.told_rad = config.turn_rad, .absolute = config.encoder.counts_at_zero.has_value()},
           .painting_blocked = !patient.painting_blocked.empty()},
       lanes);
   mapping = std::make_unique<MapperStage>(
@@ -184,7 +192,6 @@ void Cart::State::build_stages() {
           .simulated = config.simulated(),
           .software_rendering = context.render_class() == RenderClass::software,
           .degraded = !lacks.empty(),
-          .turn = config.turn,
           .painting_blocked = patient.painting_blocked,
           .submit_deadline = budget.dequeue_to_submitted.bound,
           .freshness = {.tracker_period = tracker_period, .video_period = period_of(config.camera.rate_hz)}});
@@ -222,6 +229,10 @@ ThreadPlan Cart::State::plan(ThreadId id) {
       plan.stages = {pedal.get()};
       plan.wake = &setup.ports.pedal;
       plan.ledgers = {ledger(StageId::pedal)};
+      if (encoder != nullptr) {
+        plan.stages.push_back(encoder.get());
+        plan.ledgers.push_back(ledger(StageId::encoder));
+      }
       break;
     case ThreadId::tracker:
       plan.stages = {tracker.get()};
@@ -387,6 +398,7 @@ Cart::Now Cart::now() const {
   now.camera = s.camera->fault();
   now.pedal = s.pedal->fault();
   now.panel = s.showing->fault();
+  if (s.encoder) now.encoder = s.encoder->fault();
   return now;
 }
 

@@ -10,6 +10,7 @@
 #include "board/ports/frame_source.hpp"
 #include "board/ports/gpio_lines.hpp"
 #include "board/ports/panel.hpp"
+#include "board/ports/turn_encoder.hpp"
 #include "firmware-host/app/cart_config.hpp"
 #include "firmware-host/app/patient.hpp"
 #include "firmware-host/app/topology.hpp"
@@ -23,12 +24,13 @@
 
 namespace orcart {
 
-/// The four seams, already opened. Lent; they outlive the cart.
+/// The seams, already opened. Lent; they outlive the cart.
 struct Ports {
   ByteLink& tracker;
   FrameSource& camera;
   GpioLines& pedal;
   Panel& panel;
+  TurnEncoder* encoder = nullptr;  ///< null where the turn is not followed by one
 };
 
 /// What a run did, read after stop().
@@ -94,7 +96,8 @@ class Cart {
     double coverage = 0;
     std::size_t frames = 0, captures = 0;  ///< shown; painted or refused
     /// What is wrong with each device; nothing_yet where nothing is.
-    PortFault camera = PortFault::nothing_yet, pedal = PortFault::nothing_yet, panel = PortFault::nothing_yet;
+    PortFault camera = PortFault::nothing_yet, pedal = PortFault::nothing_yet, panel = PortFault::nothing_yet,
+              encoder = PortFault::nothing_yet;
   };
   Now now() const;
 

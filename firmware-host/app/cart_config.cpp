@@ -22,12 +22,15 @@ void read_files(TomlReader& reader, CartConfig& config) {
     config.passport.medium = scope.choice_of<Medium>(
         "medium", {{"air", Medium::air}, {"water", Medium::water}, {"saline", Medium::saline}});
   if (scope.has("serial")) config.passport.serial = scope.text("serial");
-  config.turn = scope.choice_of<TurnSource>(
-      "turn", {{"told", TurnSource::told}, {"marker", TurnSource::marker}, {"notch", TurnSource::notch}},
-      TurnSource::told);
+  config.turn = scope.choice_of<TurnSource>("turn",
+                                            {{"told", TurnSource::told},
+                                             {"marker", TurnSource::marker},
+                                             {"encoder", TurnSource::encoder},
+                                             {"notch", TurnSource::notch}},
+                                            TurnSource::told);
   if (scope.has("turn_deg")) {
     config.turn_rad = scope.number("turn_deg", {.min = -360, .max = 360}) * std::numbers::pi / 180;
-    if (config.turn != TurnSource::told)
+    if (config.turn == TurnSource::marker || config.turn == TurnSource::notch)
       scope.refuse("turn_deg",
                    "stands beside turn = \"marker\" or \"notch\"; a turn is either told or followed");
   }
@@ -47,6 +50,17 @@ void check_second_marker(const TomlSection& section, const CartConfig& config) {
                  there
                      ? "names a marker that nobody asks: [scope] turn is not \"marker\""
                      : "is missing: [scope] turn = \"marker\" wants the second marker's definition or port");
+}
+
+/// An encoder is there exactly where the turn is followed by it.
+void read_turn_encoder(const TomlSection& section, CartConfig& config) {
+  if (config.turn == TurnSource::encoder) {
+    read_encoder(section, config.encoder);
+  } else if (section.present()) {
+    EncoderConfig unasked;
+    read_encoder(section, unasked);
+    section.refuse("kind", "names an encoder that nobody asks: [scope] turn is not \"encoder\"");
+  }
 }
 
 void read_painting(const TomlSection& section, CartConfig& config) {
@@ -89,6 +103,7 @@ Result<CartConfig> read_cart(const std::filesystem::path& file) {
   check_second_marker(reader.section("tracker"), config);
   read_camera(reader.section("camera"), config.camera);
   read_pedal(reader.section("pedal"), config.pedal);
+  read_turn_encoder(reader.section("encoder"), config);
   read_panel(reader.section("panel"), config.panel);
   read_simulation(reader.section("simulation"), config.simulation);
   const TomlSection sync = reader.section("sync");
@@ -101,8 +116,13 @@ Result<CartConfig> read_cart(const std::filesystem::path& file) {
   const TomlSection view = reader.section("view");
   config.view_from = view.numbers("from", 3, config.view_from);
   config.view_up = view.numbers("up", 3, config.view_up);
-  if (config.tracker.kind != TrackerKind::simulated && config.camera.kind != CameraKind::simulated &&
-      config.pedal.kind == PedalKind::simulated) {
+  const bool measured =
+      config.tracker.kind != TrackerKind::simulated && config.camera.kind != CameraKind::simulated;
+  if (measured && config.turn == TurnSource::encoder && config.encoder.kind == EncoderKind::simulated)
+    reader.section("encoder").refuse("kind",
+                                     "is \"simulated\", which turns by the script of a simulated "
+                                     "procedure; with tracker and camera real, evdev is accepted");
+  if (measured && config.pedal.kind == PedalKind::simulated) {
     reader.section("pedal").refuse(
         "kind",
         "is \"simulated\", which presses by the script of a simulated procedure; with "

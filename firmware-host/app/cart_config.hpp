@@ -37,7 +37,9 @@ struct CartConfig {
   std::filesystem::path surface, scope, registration;
   PassportWish passport;
   TurnSource turn = TurnSource::told;
-  std::optional<double> turn_rad;  ///< told: of the light post since the passport was made; nothing: not said
+  /// Of the light post since the passport was made, for the whole run or at the start of an encoder's;
+  /// nothing: not said.
+  std::optional<double> turn_rad;
   SeenFrom seen_from = SeenFrom::outside;
   double texel_mm = 0.2;
   TextureMode mode = TextureMode::perspective;
@@ -48,6 +50,7 @@ struct CartConfig {
   TrackerConfig tracker;
   CameraConfig camera;
   PedalConfig pedal;
+  EncoderConfig encoder;  ///< turn = encoder
   PanelConfig panel;
   Nanos tracker_against_video{};  ///< [sync]: added to a frame's mid-exposure before poses are looked up
   double time_deviation_s = kAssumedErrors.time_s;  ///< standard deviation of it
@@ -63,12 +66,14 @@ struct CartConfig {
   /// Whether any input is none of the operating room's: every view then wears a mark.
   bool simulated() const {
     return !is_device(tracker.kind) || camera.kind == CameraKind::simulated ||
-           pedal.kind == PedalKind::simulated;
+           pedal.kind == PedalKind::simulated ||
+           (turn == TurnSource::encoder && encoder.kind == EncoderKind::simulated);
   }
   /// Whether a device's own time passes in this cart: it needs the wall clock.
   bool any_device() const {
     return is_device(tracker.kind) || camera.kind != CameraKind::simulated || pedal.kind == PedalKind::gpio ||
-           pedal.kind == PedalKind::keyboard;
+           pedal.kind == PedalKind::keyboard ||
+           (turn == TurnSource::encoder && encoder.kind == EncoderKind::evdev);
   }
 };
 

@@ -2,6 +2,7 @@
 #include "firmware-host/app/device_config.hpp"
 
 #include <charconv>
+#include <numbers>
 
 namespace orcart {
 namespace {
@@ -116,6 +117,37 @@ void read_pedal(const TomlSection& section, PedalConfig& pedal) {
   if (!pedal.keyboard.key.empty() && !key_code_of(pedal.keyboard.key))
     section.refuse("key",
                    "\"" + pedal.keyboard.key + "\" is unknown; " + known_keys() + " would be accepted");
+}
+
+EncoderScale scale_of(const EncoderConfig& encoder) {
+  const double rad_per_count = 2 * std::numbers::pi / static_cast<double>(encoder.counts_per_turn);
+  return {.rad_per_count = encoder.rise == CountsRise::clockwise ? rad_per_count : -rad_per_count,
+          .counts_at_zero = encoder.counts_at_zero.value_or(0)};
+}
+
+// A turn of the picture is from x towards y, which goes clockwise as it is seen.
+void read_encoder(const TomlSection& section, EncoderConfig& encoder) {
+  encoder.kind = section.choice_of<EncoderKind>(
+      "kind", {{"simulated", EncoderKind::simulated}, {"evdev", EncoderKind::evdev}});
+  encoder.counts_per_turn = section.integer("counts_per_turn", {.min = 90, .max = 10'000'000});
+  encoder.rise = section.choice_of<CountsRise>(
+      "counts_rise", {{"clockwise", CountsRise::clockwise}, {"anticlockwise", CountsRise::anticlockwise}});
+  if (encoder.kind == EncoderKind::simulated) {
+    if (encoder.rise != CountsRise::clockwise)
+      section.refuse("counts_rise", "is \"anticlockwise\"; those of a simulated encoder rise clockwise");
+    return;
+  }
+  encoder.device.device = section.text("device");
+  encoder.device.axis = section.text("axis", "rel_dial");
+  const auto axis = encoder_axis_of(encoder.device.axis);
+  if (!encoder.device.axis.empty() && !axis)
+    section.refuse("axis",
+                   "\"" + encoder.device.axis + "\" is unknown; " + known_axes() + " would be accepted");
+  if (!section.has("counts_at_zero")) return;
+  encoder.counts_at_zero = section.integer("counts_at_zero");
+  if (axis && axis->kind == AxisKind::relative)
+    section.refuse("counts_at_zero", "stands beside " + encoder.device.axis +
+                                         ", which knows no place of its own; an axis abs_... does");
 }
 
 void read_panel(const TomlSection& section, PanelConfig& panel) {

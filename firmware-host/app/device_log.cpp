@@ -8,7 +8,8 @@ std::string DeviceLog::news(const Cart::Now& now) {
     std::string_view name;
     PortFault fault;
   };
-  const std::array<Watched, 3> watched{{{"camera", now.camera}, {"pedal", now.pedal}, {"panel", now.panel}}};
+  const std::array<Watched, 4> watched{
+      {{"camera", now.camera}, {"pedal", now.pedal}, {"panel", now.panel}, {"encoder", now.encoder}}};
   std::string lines;
   for (std::size_t i = 0; i < watched.size(); ++i) {
     const PortFault fault = watched[i].fault;

@@ -14,7 +14,8 @@ class DeviceLog {
   std::string news(const Cart::Now& now);
 
  private:
-  std::array<PortFault, 3> known_{PortFault::nothing_yet, PortFault::nothing_yet, PortFault::nothing_yet};
+  std::array<PortFault, 4> known_{PortFault::nothing_yet, PortFault::nothing_yet, PortFault::nothing_yet,
+                                  PortFault::nothing_yet};
 };
 
 }  // namespace orcart

@@ -3,6 +3,7 @@
 
 #include "board/sim/simulated_panel.hpp"
 #include "firmware-host/app/open_camera.hpp"
+#include "firmware-host/app/open_encoder.hpp"
 #include "firmware-host/app/open_panel.hpp"
 #include "firmware-host/app/open_pedal.hpp"
 #include "firmware-host/app/open_tracker.hpp"
@@ -42,6 +43,7 @@ struct Devices::State {
   std::unique_ptr<ByteLink> tracker;
   std::unique_ptr<FrameSource> camera;
   std::unique_ptr<GpioLines> pedal;
+  std::unique_ptr<TurnEncoder> encoder;
   OpenedPanel panel;
   std::unique_ptr<UnseenPanel> unseen;
   std::unique_ptr<SimulatedDevices> simulated;
@@ -66,6 +68,10 @@ Result<void> Devices::State::open_real(const Request& request) {
                           request.preview != nullptr ? &request.preview->pedal() : nullptr);
   if (!lines) return tl::unexpected(lines.error());
   pedal = std::move(*lines);
+  if (config.turn != TurnSource::encoder) return {};
+  auto knob = open_encoder(config.encoder, request.clock);
+  if (!knob) return tl::unexpected(knob.error());
+  encoder = std::move(*knob);
   return {};
 }
 
@@ -78,7 +84,8 @@ Result<void> Devices::State::open_simulated(const Request& request) {
                                         .drawing = request.drawing,
                                         .tracker = tracker.get(),
                                         .camera = camera.get(),
-                                        .real_pedal = pedal.get()});
+                                        .real_pedal = pedal.get(),
+                                        .real_encoder = encoder.get()});
   if (!made) return tl::unexpected(made.error());
   simulated = std::move(*made);
   start = simulated->start();
@@ -122,13 +129,18 @@ Ports Devices::ports() {
   State& s = *state_;
   if (!s.simulated) {
     Panel& panel = s.panel.panel ? *s.panel.panel : static_cast<Panel&>(s.unseen->panel);
-    return {.tracker = *s.tracker, .camera = *s.camera, .pedal = *s.pedal, .panel = panel};
+    return {.tracker = *s.tracker,
+            .camera = *s.camera,
+            .pedal = *s.pedal,
+            .panel = panel,
+            .encoder = s.encoder.get()};
   }
   const Ports ports = s.simulated->ports();
   return {.tracker = ports.tracker,
           .camera = ports.camera,
           .pedal = ports.pedal,
-          .panel = s.panel.panel ? *s.panel.panel : ports.panel};
+          .panel = s.panel.panel ? *s.panel.panel : ports.panel,
+          .encoder = ports.encoder};
 }
 
 NativeDisplay Devices::display() const {

@@ -1,4 +1,4 @@
-// The four devices of a run: real ones where cart.toml names them, simulated ones elsewhere.
+// The devices of a run: real ones where cart.toml names them, simulated ones elsewhere.
 #pragma once
 
 #include <functional>
@@ -26,8 +26,8 @@ class Devices {
     std::optional<Nanos> run_for;
     std::function<void(double done)> drawing;
   };
-  /// Opens tracker, camera, pedal and panel in this order; what is refused says so in one sentence, and what
-  /// was opened before is given back.
+  /// Opens tracker, camera, pedal, encoder (where one is asked) and panel in this order; what is refused says
+  /// so in one sentence, and what was opened before is given back.
   static Result<std::unique_ptr<Devices>> open(const Request& request);
   ~Devices();
 

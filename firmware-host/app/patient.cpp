@@ -9,15 +9,19 @@ namespace {
 
 /// What a passport must hold for its scope to be followed.
 Result<void> check_followed(const CartConfig& config, const ScopeModel& scope) {
-  const bool by_marker = config.turn == TurnSource::marker;
+  const bool by_marker = config.turn == TurnSource::marker, by_notch = config.turn == TurnSource::notch;
   const std::string place = config.scope.string() + ": the passport ";
-  const std::string wanted = std::string("[scope] turn = \"") + (by_marker ? "marker" : "notch") + "\" needs";
+  const std::string wanted = std::string("[scope] turn = \"") +
+                             (by_marker  ? "marker"
+                              : by_notch ? "notch"
+                                         : "encoder") +
+                             "\" needs";
   if (!scope.turning)
     return fail(place + "has no [turning], which " + wanted + "; run orcart calibrate turn");
   if (by_marker && !scope.turning->R_SL)
     return fail(place + "has no [turning] R_SL, the second marker's place at turn 0, which " + wanted +
                 "; run orcart calibrate turn with --second-poses");
-  if (!by_marker && !scope.notch_rad)
+  if (by_notch && !scope.notch_rad)
     return fail(place + "has no [mask] notch_rad, which " + wanted +
                 "; run orcart calibrate turn on pictures that show the notch");
   return {};
@@ -26,7 +30,13 @@ Result<void> check_followed(const CartConfig& config, const ScopeModel& scope) {
 /// Puts the passport at the turn that was said. A scope that turns and of which nobody said how far is shown,
 /// not painted with. One that is followed stays as it was calibrated.
 Result<void> turn_scope(const CartConfig& config, Patient& patient) {
-  if (config.turn != TurnSource::told) return check_followed(config, patient.scope);
+  constexpr const char* kSayIt = "PAINTING BLOCKED: say [scope] turn_deg or --turn";
+  if (config.turn != TurnSource::told) {
+    const bool unsaid =
+        config.turn == TurnSource::encoder && !config.encoder.counts_at_zero && !config.turn_rad;
+    if (unsaid && patient.painting_blocked.empty()) patient.painting_blocked = kSayIt;
+    return check_followed(config, patient.scope);
+  }
   if (!patient.scope.turning) {
     if (!config.turn_rad) return {};
     return fail(
@@ -34,8 +44,7 @@ Result<void> turn_scope(const CartConfig& config, Patient& patient) {
         ": the passport has no [turning], so [scope] turn_deg means nothing; run orcart calibrate turn, "
         "or remove turn_deg");
   }
-  if (!config.turn_rad && patient.painting_blocked.empty())
-    patient.painting_blocked = "PAINTING BLOCKED: say [scope] turn_deg or --turn";
+  if (!config.turn_rad && patient.painting_blocked.empty()) patient.painting_blocked = kSayIt;
   patient.scope = turned(patient.scope, config.turn_rad.value_or(0));
   return {};
 }

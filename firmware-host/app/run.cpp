@@ -268,7 +268,7 @@ ExitCode run(const Options& options) {
   if (options.run_for) config->simulation.duration_s = seconds(*options.run_for);
   if (options.medium) config->passport.medium = options.medium;
   if (options.turn_rad) {
-    config->turn = TurnSource::told;
+    if (config->turn != TurnSource::encoder) config->turn = TurnSource::told;
     config->turn_rad = options.turn_rad;
   }
   auto patient = read_patient(*config);

@@ -214,6 +214,7 @@ RunReport figures_of(Cart& cart, const RunFacts& facts) {
   r.degraded = cart.lacks();
   for (const StageRow& row : kStages) {
     const StageLedger& ledger = cart.stage_ledgers()[static_cast<std::size_t>(row.id)];
+    if (row.id == StageId::encoder && ledger.wall().count() == 0) continue;  // this cart has none
     r.stages.push_back(distribution_of(std::string(row.name),
                                        "thread " + std::string(spec_of(row.thread).name), ledger.budget(),
                                        ledger.wall()));

@@ -77,12 +77,14 @@ struct SimulatedDevices::State {
   SimulatedByteLink link;
   std::optional<SimulatedFrameSource> camera;
   SimulatedGpio pedal;
+  std::optional<SimulatedEncoder> encoder;  ///< where the turn is followed by one
   PanelPictures pictures;
   std::vector<PanelObserver*> observers;
   SimulatedPanel panel;
   ByteLink* real_tracker;
   FrameSource* real_camera;
   GpioLines* real_pedal;
+  TurnEncoder* real_encoder;
 
   State(SimulatedWorld made_world, std::optional<MovieFile> made_movie, const Request& request)
       : world(std::move(made_world)),
@@ -96,7 +98,12 @@ struct SimulatedDevices::State {
               observers),
         real_tracker(request.tracker),
         real_camera(request.camera),
-        real_pedal(request.real_pedal) {
+        real_pedal(request.real_pedal),
+        real_encoder(request.real_encoder) {
+    if (request.config.turn == TurnSource::encoder)
+      encoder.emplace(request.clock,
+                      encoder_script(world, static_cast<double>(request.config.encoder.counts_per_turn),
+                                     request.encoder_faults));
     if (!movie) return;
     camera.emplace(
         request.clock, *movie,
@@ -156,7 +163,10 @@ Ports SimulatedDevices::ports() {
   return {.tracker = s.real_tracker != nullptr ? *s.real_tracker : s.link,
           .camera = s.real_camera != nullptr ? *s.real_camera : *s.camera,
           .pedal = s.real_pedal != nullptr ? *s.real_pedal : s.pedal,
-          .panel = s.panel};
+          .panel = s.panel,
+          .encoder = s.real_encoder != nullptr ? s.real_encoder
+                     : s.encoder               ? &*s.encoder
+                                               : nullptr};
 }
 Instant SimulatedDevices::start() const {
   return state_->world.start();

@@ -1,4 +1,4 @@
-// The simulated cart's four devices and the world they measure, made from the configuration.
+// The simulated cart's devices and the world they measure, made from the configuration.
 #pragma once
 
 #include <functional>
@@ -7,6 +7,7 @@
 #include "board/sim/live_pedal.hpp"
 #include "board/sim/movie_file.hpp"
 #include "board/sim/ndi/fault_schedule.hpp"
+#include "board/sim/simulated_encoder.hpp"
 #include "board/sim/simulated_frame_source.hpp"
 #include "board/sim/simulated_world.hpp"
 #include "firmware-host/app/cart.hpp"
@@ -31,6 +32,8 @@ class SimulatedDevices {
     ByteLink* tracker = nullptr;
     FrameSource* camera = nullptr;
     GpioLines* real_pedal = nullptr;
+    TurnEncoder* real_encoder = nullptr;
+    EncoderFaults encoder_faults{};
     std::vector<Nanos> more_presses{};  ///< besides the script's, short ones, since the procedure's start
   };
   /// Plans the procedure, and draws its pictures into a movie file unless they lie there already.

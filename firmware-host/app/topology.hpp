@@ -18,8 +18,8 @@ enum class ThreadId : std::uint8_t { pedal, tracker, camera, mapping, render, se
 inline constexpr std::size_t kThreadCount = 6;
 
 /// In the order of the way of the data.
-enum class StageId : std::uint8_t { pedal, tracker, camera, sync, mapper, painter, panel, session };
-inline constexpr std::size_t kStageCount = 8;
+enum class StageId : std::uint8_t { pedal, encoder, tracker, camera, sync, mapper, painter, panel, session };
+inline constexpr std::size_t kStageCount = 9;
 
 struct StageRow {
   StageId id;
@@ -34,6 +34,7 @@ struct StageRow {
 /// the wire or the exposure is in the paths below.
 inline constexpr std::array<StageRow, kStageCount> kStages{{
     {StageId::pedal, "pedal", ThreadId::pedal, {1ms, 5ms}, {1ms, 5ms}, "count"},
+    {StageId::encoder, "encoder", ThreadId::pedal, {1ms, 5ms}, {1ms, 5ms}, "carry"},
     {StageId::tracker, "tracker", ThreadId::tracker, {3ms, 8ms}, {3ms, 8ms}, "skip missed, keep phase"},
     {StageId::camera, "camera", ThreadId::camera, {500us, 2ms}, {500us, 2ms}, "skip"},
     {StageId::sync, "match", ThreadId::mapping, {20us, 50us}, {20us, 50us}, "-"},
@@ -62,8 +63,9 @@ inline constexpr std::array<ThreadRow, kThreadCount> kThreads{{
 }};
 
 /// Depths of the bounded queues; a full queue drops and counts, unless its depth makes that impossible.
-inline constexpr std::size_t kPoseQueueDepth = 64;   ///< tracker -> sync: 0.16 s at 400 Hz
-inline constexpr std::size_t kPedalQueueDepth = 64;  ///< pedal -> sync
+inline constexpr std::size_t kPoseQueueDepth = 64;      ///< tracker -> sync: 0.16 s at 400 Hz
+inline constexpr std::size_t kPedalQueueDepth = 64;     ///< pedal -> sync
+inline constexpr std::size_t kEncoderQueueDepth = 256;  ///< encoder -> sync: two steps of the stage
 inline constexpr std::uint32_t kFrameBuffers =
     10;  ///< 4 waiting for a pose, 2 queued, 2 painted, 1 shown, 1 filling
 inline constexpr std::size_t kFrameQueueDepth = 2 * kFrameBuffers;  ///< camera -> sync: cannot overflow

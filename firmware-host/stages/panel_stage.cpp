@@ -34,6 +34,22 @@ std::string_view words_for(Refusal refusal) {
   return "";
 }
 
+std::string_view words_for(TurnLack lack) {
+  switch (lack) {
+    case TurnLack::second_marker:
+      return "TURN NOT KNOWN: clear the second marker's line of sight";
+    case TurnLack::notch:
+      return "TURN NOT KNOWN: no notch in the picture; light its rim";
+    case TurnLack::encoder:
+      return "TURN NOT KNOWN: the encoder is not there; check its cable";
+    case TurnLack::encoder_zero:
+      return "TURN NOT KNOWN: tell it and start again (orcart turn, --turn)";
+    case TurnLack::none:
+      break;
+  }
+  return "";
+}
+
 Freshness shown_as(Liveness liveness) {
   switch (liveness) {
     case Liveness::live:
@@ -149,7 +165,7 @@ void PanelStage::fill_status(Instant now) noexcept {
   screen_state_.show_live = status.video != Freshness::lost;
   screen_state_.scope_predicted = scope_.pose.kind == PoseKind::predicted;
   const bool show_scope = tracked && scope_.pose.kind != PoseKind::none && now - scope_.at < kScopeShownFor;
-  if (scope_.turn_known) screen_state_.turn_rad = scope_.turn_rad;
+  if (scope_.turn_lack == TurnLack::none) screen_state_.turn_rad = scope_.turn_rad;
   screen_state_.X_MC = show_scope ? std::optional(scope_.X_MC) : std::nullopt;
 
   if (paint.version != screen_state_.paint_version || now >= coverage_due_) {
@@ -192,11 +208,8 @@ void PanelStage::choose_notice(Instant now) noexcept {
   if (!status.tool_seen) return notice(Notice::Level::warning, "TOOL NOT SEEN: clear its line of sight");
   if (!status.reference_seen)
     return notice(Notice::Level::warning, "REFERENCE NOT SEEN: clear its line of sight");
-  if (!scope_.turn_known && now - scope_.at < kScopeShownFor) {
-    return notice(Notice::Level::warning, settings_.turn == TurnSource::marker
-                                              ? "TURN NOT KNOWN: clear the second marker's line of sight"
-                                              : "TURN NOT KNOWN: no notch in the picture; light its rim");
-  }
+  if (scope_.turn_lack != TurnLack::none && now - scope_.at < kScopeShownFor)
+    return notice(Notice::Level::warning, words_for(scope_.turn_lack));
   if (tracker_.bumped_at != Instant{} && now - tracker_.bumped_at < kBumpShownFor)
     return notice(Notice::Level::warning, "TRACKER BUMPED: verify on a landmark");
   if (camera_.frozen) return notice(Notice::Level::warning, "VIDEO FROZEN? The picture repeats");

@@ -26,7 +26,6 @@ struct PanelStageSettings {
   bool simulated = true;
   bool software_rendering = true;
   bool degraded = false;
-  TurnSource turn = TurnSource::told;
   std::string painting_blocked;  ///< the reason, shown as long as the program runs; empty: it is not
   Nanos
       submit_deadline{};  ///< from dequeue, the sum of the stages' bounds (topology): late is counted from it

@@ -5,22 +5,49 @@ namespace orcart {
 
 StepReport SyncStage::step(Instant now) noexcept {
   StepReport report;
-  report.items = take_poses() + take_presses() + take_frames(now);
+  if (settings_.matcher.turn == TurnSource::encoder) hear_encoder();
+  report.items = take_poses(now) + take_presses() + take_frames(now);
   decide(now);
   tell_scope(now);
   report.worked = report.items > 0;
   return report;
 }
 
-std::uint32_t SyncStage::take_poses() noexcept {
+// The news first: they vouch for angles that are in the lane by then.
+void SyncStage::hear_encoder() noexcept {
+  EncoderNews news;
+  if (!lanes_.encoder_news.take(news)) return;
+  EncoderAngle angle;
+  const std::size_t waiting = lanes_.encoder_angles.size();
+  for (std::size_t i = 0; i < waiting && lanes_.encoder_angles.try_pop(angle); ++i) encoder_turn_.push(angle);
+  encoder_turn_.heard(news.heard_until, news.connected);
+}
+
+std::uint32_t SyncStage::take_poses(Instant now) noexcept {
   std::uint32_t count = 0;
   PoseSample sample;
-  for (const std::size_t waiting = lanes_.poses.size(); count < waiting && lanes_.poses.try_pop(sample);
-       ++count) {
-    if (settings_.matcher.turn == TurnSource::marker) sample.turn_rad = turn_by_markers(sample);
+  const std::size_t waiting = lanes_.poses.size() + (unheard_ ? 1 : 0);
+  for (; count < waiting; ++count) {
+    if (unheard_) {
+      sample = *unheard_;
+    } else if (!lanes_.poses.try_pop(sample)) {
+      break;
+    }
+    const bool waits = settings_.matcher.turn == TurnSource::encoder &&
+                       !encoder_turn_.decided(sample.measured_at) &&
+                       now < sample.arrived_at + kLongestHearing;
+    unheard_ = waits ? std::optional(sample) : std::nullopt;
+    if (waits) break;
+    sample.turn_rad = turn_at(sample);
     (void)history_.push(sample);
   }
   return count;
+}
+
+std::optional<double> SyncStage::turn_at(const PoseSample& sample) const noexcept {
+  if (settings_.matcher.turn == TurnSource::marker) return turn_by_markers(sample);
+  if (settings_.matcher.turn == TurnSource::encoder) return encoder_turn_.at(sample.measured_at);
+  return std::nullopt;
 }
 
 std::optional<double> SyncStage::turn_by_markers(const PoseSample& sample) const noexcept {
@@ -111,17 +138,22 @@ void SyncStage::fail(const CaptureRequest& request, Refusal why) noexcept {
   (void)lanes_.orders.try_push({.kind = PaintOrderKind::fail, .request = request, .refusal = why});
 }
 
+TurnLack SyncStage::lack_of_turn(Instant now, const PoseAnswer& pose) const noexcept {
+  const TurnSource source = settings_.matcher.turn;
+  if (source == TurnSource::told) return TurnLack::none;
+  if (source == TurnSource::notch) return notch_turn_.now(now) ? TurnLack::none : TurnLack::notch;
+  if (source == TurnSource::encoder && !encoder_turn_.connected()) return TurnLack::encoder;
+  if (source == TurnSource::encoder && !encoder_turn_.zero_known()) return TurnLack::encoder_zero;
+  if (pose.kind != PoseKind::none || !history_.lacks_turn_around(now)) return TurnLack::none;
+  return source == TurnSource::marker ? TurnLack::second_marker : TurnLack::encoder;
+}
+
 void SyncStage::tell_scope(Instant now) noexcept {
   ScopeNow scope{.at = now, .pose = history_.at(now)};
-  scope.turn_rad = scope.pose.turn_rad;
-  if (settings_.matcher.turn == TurnSource::notch) {
-    const auto turn = notch_turn_.now(now);
-    scope.turn_known = turn.has_value();
-    scope.turn_rad = turn.value_or(0);
-  } else if (settings_.matcher.turn == TurnSource::marker) {
-    scope.turn_known = scope.pose.kind != PoseKind::none || !history_.lacks_turn_around(now);
-  }
-  if (!scope.turn_known) scope.pose.kind = PoseKind::none;
+  scope.turn_rad =
+      settings_.matcher.turn == TurnSource::notch ? notch_turn_.now(now).value_or(0) : scope.pose.turn_rad;
+  scope.turn_lack = lack_of_turn(now, scope.pose);
+  if (scope.turn_lack != TurnLack::none) scope.pose.kind = PoseKind::none;
   if (scope.pose.kind != PoseKind::none)
     scope.X_MC = settings_.X_MR * scope.pose.X_RS * optics_at(settings_.scope, scope.turn_rad).X_SC;
   lanes_.scope_now.post(scope);

@@ -17,6 +17,7 @@ struct SyncStageSettings {
   CaptureSelectorSettings selector;
   Pose<M, R> X_MR;                ///< registration
   ScopeModel scope;               ///< the passport, with hand-eye and [turning]
+  EncoderTurnSettings encoder{};  ///< where the turn is followed by one
   bool painting_blocked = false;  ///< every press fails, and says so
 };
 
@@ -25,19 +26,24 @@ class SyncStage final : public Stage {
   /// A second marker further than this off the calibrated axis was bent or has slipped: its turn is not
   /// believed.
   static constexpr double kMostSwing_rad = 5 * 3.14159265358979 / 180;
+  /// A pose waits so long for the encoder to be heard up to its instant; then it has no turn.
+  static constexpr Nanos kLongestHearing = 20ms;
 
   SyncStage(const SyncStageSettings& settings, Lanes& lanes)
       : settings_(settings),
         lanes_(lanes),
         history_(settings.history),
         matcher_(settings.matcher),
-        selector_(settings.selector) {}
+        selector_(settings.selector),
+        encoder_turn_(settings.encoder) {}
 
   std::string_view name() const noexcept override { return "match"; }
   StepReport step(Instant now) noexcept override;
 
  private:
-  std::uint32_t take_poses() noexcept;
+  void hear_encoder() noexcept;
+  std::uint32_t take_poses(Instant now) noexcept;
+  std::optional<double> turn_at(const PoseSample& sample) const noexcept;
   std::optional<double> turn_by_markers(const PoseSample& sample) const noexcept;
   std::uint32_t take_presses() noexcept;
   std::uint32_t take_frames(Instant now) noexcept;
@@ -45,6 +51,7 @@ class SyncStage final : public Stage {
   void select(const MatchedFrame& matched, Instant now) noexcept;
   void order(PaintOrderKind kind, const CaptureRequest& request) noexcept;
   void fail(const CaptureRequest& request, Refusal why) noexcept;
+  TurnLack lack_of_turn(Instant now, const PoseAnswer& pose) const noexcept;
   void tell_scope(Instant now) noexcept;
 
   SyncStageSettings settings_;
@@ -53,6 +60,8 @@ class SyncStage final : public Stage {
   FrameMatcher matcher_;
   CaptureSelector selector_;
   NotchTurn notch_turn_;
+  EncoderTurn encoder_turn_;
+  std::optional<PoseSample> unheard_;  ///< a pose that waits for the encoder
 };
 
 }  // namespace orcart

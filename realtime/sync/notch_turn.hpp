@@ -13,9 +13,10 @@ namespace orcart {
 
 /// By what the cart knows how far the light post is turned.
 enum class TurnSource : std::uint8_t {
-  told,    ///< once for the whole run
-  marker,  ///< a second marker on the other side of the coupler
-  notch,   ///< the notch in each picture
+  told,     ///< once for the whole run
+  marker,   ///< a second marker on the other side of the coupler
+  encoder,  ///< one on the coupler
+  notch,    ///< the notch in each picture
 };
 
 /// One thread; frames in order of mid-exposure.

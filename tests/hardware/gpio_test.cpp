@@ -1,10 +1,6 @@
 // The pedal on real drivers: the seam's contract and lost edges on gpio-sim, and a keyboard pedal on uinput.
-#include <fcntl.h>
-#include <linux/uinput.h>
 #include <sys/ioctl.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -14,6 +10,7 @@
 #include "board/linux/pedal/keyboard_pedal.hpp"
 #include "tests/board/ports/gpio_contract.hpp"
 #include "tests/hardware/environment.hpp"
+#include "tests/hardware/made_input.hpp"
 
 namespace orcart::testing {
 namespace {
@@ -175,58 +172,25 @@ TEST_F(Gpio, RaisesTheTriggerForItsWidth) {
   EXPECT_EQ(level(), 0);
 }
 
-/// A keyboard with one key, made of nothing.
-class MadeKeyboard {
- public:
-  explicit MadeKeyboard(const std::string& uinput)
-      : fd_(::open(uinput.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC)) {
-    ::ioctl(fd_, UI_SET_EVBIT, EV_KEY);
-    ::ioctl(fd_, UI_SET_KEYBIT, KEY_F13);
-    uinput_setup setup{};
-    setup.id = {.bustype = BUS_USB, .vendor = 0x1, .product = 0x1, .version = 1};
-    std::snprintf(setup.name, sizeof setup.name, "orcart test pedal");
-    ::ioctl(fd_, UI_DEV_SETUP, &setup);
-    ::ioctl(fd_, UI_DEV_CREATE);
-    char folder[64] = "";
-    ::ioctl(fd_, UI_GET_SYSNAME(sizeof folder), folder);
-    std::error_code error;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::string("/sys/devices/virtual/input/") + folder, error))
-      if (entry.path().filename().string().starts_with("event"))
-        node_ = "/dev/input/" + entry.path().filename().string();
-  }
-  ~MadeKeyboard() { ::close(fd_); }
-  MadeKeyboard(const MadeKeyboard&) = delete;
-  MadeKeyboard& operator=(const MadeKeyboard&) = delete;
-  const std::string& node() const { return node_; }
-  void key(int value) const {
-    input_event events[2]{};
-    events[0].type = EV_KEY;
-    events[0].code = KEY_F13;
-    events[0].value = value;
-    events[1].type = EV_SYN;
-    EXPECT_EQ(::write(fd_, events, sizeof events), static_cast<ssize_t>(sizeof events));
-  }
-
- private:
-  int fd_;
-  std::string node_;
-};
+/// A keyboard with one key.
+MadeInput made_keyboard(const std::string& uinput) {
+  return MadeInput(uinput, "orcart test pedal", [](int fd) {
+    ::ioctl(fd, UI_SET_EVBIT, EV_KEY);
+    ::ioctl(fd, UI_SET_KEYBIT, KEY_F13);
+  });
+}
 
 TEST(Keyboard, IsAPedalThatIsGrabbedAndComesBack) {
   const auto uinput = device_named("ORCART_TEST_UINPUT");
   if (!uinput) GTEST_SKIP() << not_set("ORCART_TEST_UINPUT");
   RealClock clock;
-  auto keyboard = std::make_unique<MadeKeyboard>(*uinput);
-  const Instant patience = clock.now() + 5s;
-  while (!std::filesystem::exists(keyboard->node()) && clock.now() < patience)
-    clock.sleep_until(clock.now() + 10ms);
+  auto keyboard = std::make_optional(made_keyboard(*uinput));
   auto pedal = KeyboardPedal::open({.device = keyboard->node(), .key = "f13"}, clock);
   ASSERT_TRUE(pedal) << pedal.error().message;
   EXPECT_FALSE(KeyboardPedal::open({.device = keyboard->node(), .key = "f13"}, clock)) << "it is grabbed";
 
   const Instant before = clock.now();
-  keyboard->key(1);
+  keyboard->event(EV_KEY, KEY_F13, 1);
   (*pedal)->wait(clock.now() + 1s);
   const auto edge = (*pedal)->take_edge();
   ASSERT_TRUE(edge);

@@ -61,7 +61,8 @@ std::unique_ptr<CartRig> CartRig::create(const RigWish& wish) {
   if (wish.angled) {
     rig->config.scope = passport_of(*wish.angled);
     rig->config.turn = wish.angled->follow;
-    if (wish.angled->follow == TurnSource::told) rig->config.turn_rad = 0;
+    if (wish.angled->follow == TurnSource::told || wish.angled->follow == TurnSource::encoder)
+      rig->config.turn_rad = 0;
     rig->config.tracker.second = wish.angled->follow == TurnSource::marker;
     rig->config.simulation.marker_noise_mm = wish.angled->marker_noise_mm;
     rig->config.simulation.turn_rad = wish.script.turn_rad;
@@ -74,14 +75,16 @@ std::unique_ptr<CartRig> CartRig::create(const RigWish& wish) {
     return nullptr;
   }
   rig->patient = std::move(*patient);
-  auto devices = SimulatedDevices::create({.config = rig->config,
-                                           .patient = rig->patient,
-                                           .clock = rig->clock,
-                                           .pictures = 1,
-                                           .drawing = {},
-                                           .script = wish.script,
-                                           .camera_faults = wish.camera_faults,
-                                           .more_presses = wish.more_presses});
+  auto devices =
+      SimulatedDevices::create({.config = rig->config,
+                                .patient = rig->patient,
+                                .clock = rig->clock,
+                                .pictures = 1,
+                                .drawing = {},
+                                .script = wish.script,
+                                .camera_faults = wish.camera_faults,
+                                .encoder_faults = wish.angled ? wish.angled->encoder : EncoderFaults{},
+                                .more_presses = wish.more_presses});
   if (!devices) {
     ADD_FAILURE() << devices.error().message;
     return nullptr;
@@ -106,7 +109,8 @@ bool CartRig::arm(SessionStage* session, StageWrapper* wrapper, std::size_t trac
                     .ports = {.tracker = ports.tracker,
                               .camera = *camera,
                               .pedal = held_pedal ? static_cast<GpioLines&>(*held_pedal) : ports.pedal,
-                              .panel = ports.panel},
+                              .panel = ports.panel,
+                              .encoder = ports.encoder},
                     .clock = clock,
                     .session = session,
                     .longest_run_s = 20,

@@ -18,6 +18,7 @@ struct AngledWish {
   double view_deg = 30;
   TurnSource follow = TurnSource::marker;
   double marker_noise_mm = 0;
+  EncoderFaults encoder{};
 };
 
 /// What a test wants to be different from the demo.

@@ -129,6 +129,21 @@ TEST_P(Followed, ByTheNotchStaysWithinTwoPixelsAtTheCirclesEdge) {
   EXPECT_LE(edge_error_px(*turns), 2);
 }
 
+TEST_P(Followed, ByAnEncoderPaintsAsWellAsAScopeThatStands) {
+  const auto stands = finished(still({.view_deg = GetParam()})),
+             turns = finished(turning({.view_deg = GetParam(), .follow = TurnSource::encoder}));
+  ASSERT_TRUE(stands && turns);
+  const PaintingError still_error = painting_error(*stands), turned_error = painting_error(*turns);
+  record("still_mean_mm", still_error.mean_mm);
+  record("turned_mean_mm", turned_error.mean_mm);
+  record("turned_max_mm", turned_error.max_mm);
+  record("edge_px", edge_error_px(*turns));
+  record("turn_deg", worst_turn_error_deg(*turns));
+  EXPECT_LE(turned_error.mean_mm, still_error.mean_mm + 0.03);
+  EXPECT_LE(worst_turn_error_deg(*turns), 0.15) << "a count of 4,096 is 0.088 degrees";
+  EXPECT_LE(edge_error_px(*turns), 1);
+}
+
 TEST_P(Followed, NotAtAllPaintsMuchBesideThePlace) {
   const auto turns = finished(turning({.view_deg = GetParam(), .follow = TurnSource::told}));
   ASSERT_TRUE(turns);
@@ -186,6 +201,39 @@ TEST(TurnUnknown, APressWithoutANotchInThePictureFailsAndThePanelSaysWhy) {
   rig->run_to_end();
   ASSERT_EQ(rig->cart->captures().size(), 3u);
   EXPECT_EQ(rig->cart->captures().at(2).refusal, Refusal::none);
+}
+
+TEST(TurnUnknown, APressWhileTheEncoderIsUnpluggedFailsAndSoDoesOneAfterItForItsZeroIsLost) {
+  auto rig = CartRig::create(
+      turning({.follow = TurnSource::encoder, .encoder = {.gone_at = 2500ms, .back_at = 3600ms}}));
+  ASSERT_TRUE(rig && rig->arm());
+  rig->run_until(2700ms);
+  const auto before = rig->painting();
+  EXPECT_NE(std::string(rig->cart->status().notice.text.data()).find("TURN NOT KNOWN: the encoder is not"),
+            std::string::npos)
+      << rig->cart->status().notice.text.data();
+  EXPECT_EQ(rig->cart->now().encoder, PortFault::disconnected);
+  rig->run_until(4200ms);
+  EXPECT_NE(std::string(rig->cart->status().notice.text.data()).find("TURN NOT KNOWN: tell it"),
+            std::string::npos)
+      << rig->cart->status().notice.text.data();
+  EXPECT_EQ(rig->cart->now().encoder, PortFault::nothing_yet);
+  rig->run_to_end();
+  ASSERT_EQ(rig->cart->captures().size(), 3u);
+  EXPECT_EQ(rig->cart->captures().at(0).refusal, Refusal::none);
+  EXPECT_EQ(rig->cart->captures().at(1).refusal, Refusal::turn_unknown);
+  EXPECT_EQ(rig->cart->captures().at(2).refusal, Refusal::turn_unknown);
+  EXPECT_EQ(rig->painting(), before);
+}
+
+TEST(TurnUnknown, APressAfterTheKernelDroppedTheEncodersStepsFails) {
+  auto rig = CartRig::create(turning({.follow = TurnSource::encoder, .encoder = {.lost_at = 2500ms}}));
+  ASSERT_TRUE(rig && rig->arm());
+  rig->run_to_end();
+  ASSERT_EQ(rig->cart->captures().size(), 3u);
+  EXPECT_EQ(rig->cart->captures().at(0).refusal, Refusal::none);
+  EXPECT_EQ(rig->cart->captures().at(1).refusal, Refusal::turn_unknown);
+  EXPECT_EQ(rig->cart->captures().at(2).refusal, Refusal::turn_unknown);
 }
 
 TEST(TurnedSession, IsPaintedAgainFromTheRecordingToTheByte) {

@@ -20,6 +20,7 @@ ProbeReport probe() {
   append(report, probe_trackers("/"));
   append(report, probe_cameras());
   append(report, probe_pedals());
+  append(report, probe_encoders());
   append(report, probe_panels());
   append(report, probe_system("/", rights_of_this_process()));
   return report;

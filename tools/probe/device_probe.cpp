@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "board/linux/encoder/evdev_encoder.hpp"
 #include "board/linux/kms/drm_card.hpp"
 #include "board/linux/pedal/keyboard_pedal.hpp"
 #include "board/linux/pedal/requested_lines.hpp"
@@ -114,6 +115,18 @@ std::vector<Finding> probe_pedals() {
     found.push_back({.area = "pedal",
                      .lack = "no GPIO chip and no keyboard is here",
                      .next = "plug a USB pedal in, or load the driver of the board's GPIO chip"});
+  return found;
+}
+
+std::vector<Finding> probe_encoders() {
+  std::vector<Finding> found;
+  for (const EncoderFacts& encoder : encoders()) {
+    std::string axes = "axes:";
+    for (const std::string& axis : encoder.axes) axes += " " + axis;
+    found.push_back({.area = "encoder",
+                     .name = encoder.path + " input device \"" + encoder.name + "\"",
+                     .details = {axes}});
+  }
   return found;
 }
 

@@ -1,5 +1,5 @@
-// What the device nodes tell: cameras with their modes and controls, GPIO chips and keyboards, cards and
-// connectors.
+// What the device nodes tell: cameras with their modes and controls, GPIO chips and keyboards, encoders,
+// cards and connectors.
 #pragma once
 
 #include "tools/probe/findings.hpp"
@@ -9,6 +9,8 @@ namespace orcart {
 /// Each opens and asks, and changes nothing; a connector is probed, which may take half a second.
 std::vector<Finding> probe_cameras();
 std::vector<Finding> probe_pedals();
+/// Turn encoders; nothing where there is none, for few carts want one.
+std::vector<Finding> probe_encoders();
 std::vector<Finding> probe_panels();
 
 }  // namespace orcart

@@ -8,7 +8,7 @@ namespace orcart {
 
 /// One device or right. With a `lack`, `next` says what to do about it.
 struct Finding {
-  std::string area;  ///< tracker, camera, pedal, panel or system
+  std::string area;  ///< tracker, camera, pedal, encoder, panel or system
   std::string name;
   std::vector<std::string> details{};
   std::string lack{};

@@ -1,18 +1,15 @@
-// evdev: events carry the kernel's stamp on the clock that was asked for.
+// One key's events become edges.
 #include "board/linux/pedal/keyboard_pedal.hpp"
 
-#include <fcntl.h>
-#include <linux/input.h>
 #include <poll.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <ctime>
-#include <filesystem>
 #include <string_view>
 
 #include "board/linux/byte_stream.hpp"
+#include "board/linux/input_device.hpp"
 
 namespace orcart {
 namespace {
@@ -100,19 +97,6 @@ bool has(const KeyBits& bits, std::uint16_t key) {
   return (bits[key / 8] >> (key % 8) & 1) != 0;
 }
 
-std::string remedy(PortFault fault) {
-  switch (fault) {
-    case PortFault::no_permission:
-      return "; a user in the group input would be let in";
-    case PortFault::busy:
-      return "; end the program that grabbed it";
-    case PortFault::disconnected:
-      return "; plug the pedal in, or name another device (orcart probe lists them)";
-    default:
-      return "; a keyboard of /dev/input/by-id would be accepted";
-  }
-}
-
 }  // namespace
 
 std::optional<std::uint16_t> key_code_of(const std::string& key) {
@@ -141,24 +125,17 @@ Result<std::unique_ptr<KeyboardPedal>> KeyboardPedal::open(const KeyboardWish& w
 }
 
 Result<void> KeyboardPedal::open_device() {
-  const auto refused = [&](int error) {
-    const PortFault fault = port_fault_of(error);
-    return fail("pedal " + wish_.device + " cannot be had: " + std::string(word_for(fault)) + remedy(fault));
-  };
-  const int fd = calls_.open(wish_.device.c_str(), O_RDONLY | O_NONBLOCK);
-  if (fd < 0) return refused(-fd);
-  OpenDevice device(calls_, fd);
+  const auto refused = [&](int error) { return fail(input_trouble("pedal", wish_.device, error)); };
+  auto device = open_input(calls_, wish_.device);
+  if (!device) return refused(device.error());
   KeyBits keys{};
-  if (const int answer = device.control(EVIOCGBIT(EV_KEY, keys.size()), keys.data()); answer < 0)
-    return refused(-answer);
+  if (const int answer = device->control(EVIOCGBIT(EV_KEY, keys.size()), keys.data()); answer < 0)
+    return refused(answer);
   if (!has(keys, key_))
     return fail("pedal " + wish_.device + " has no key \"" + wish_.key +
                 "\"; one of its keys would be accepted");
-  int clock = CLOCK_MONOTONIC;
-  if (const int answer = device.control(EVIOCSCLOCKID, &clock); answer < 0) return refused(-answer);
-  if (const int answer = device.control(EVIOCGRAB, reinterpret_cast<void*>(1)); answer < 0)
-    return refused(-answer);
-  device_ = std::move(device);
+  if (const int answer = take_over(*device); answer < 0) return refused(answer);
+  device_ = std::move(*device);
   ledger_.found_at(is_down() ? EdgeKind::pressed : EdgeKind::released);
   return {};
 }
@@ -205,8 +182,7 @@ Result<void, PortFault> KeyboardPedal::read_more() noexcept {
   first_ = count_ = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const input_event& event = events[i];
-    const Instant at = instant_from_nanos(std::int64_t{event.input_event_sec} * 1'000'000'000 +
-                                          std::int64_t{event.input_event_usec} * 1000);
+    const Instant at = stamp_of(event);
     if (event.type == EV_SYN && event.code == SYN_DROPPED) {
       ledger_.lose();
       const EdgeKind now = is_down() ? EdgeKind::pressed : EdgeKind::released;
@@ -230,26 +206,20 @@ Result<PedalEdge, PortFault> KeyboardPedal::take_edge() noexcept {
 
 std::vector<KeyboardFacts> keyboards() {
   std::vector<KeyboardFacts> all;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator("/dev/input", error)) {
-    if (!entry.path().filename().string().starts_with("event")) continue;
-    KeyboardFacts facts{.path = entry.path()};
-    const int fd = system_calls().open(facts.path.c_str(), O_RDONLY | O_NONBLOCK);
-    if (fd < 0) {
-      const PortFault fault = port_fault_of(-fd);
-      facts.trouble = facts.path + ": " + std::string(word_for(fault)) + remedy(fault);
+  for (const std::string& node : input_nodes()) {
+    KeyboardFacts facts{.path = node};
+    const auto device = open_input(system_calls(), node);
+    if (!device) {
+      const PortFault fault = port_fault_of(-device.error());
+      facts.trouble = node + ": " + std::string(word_for(fault)) + input_remedy("pedal", fault);
     } else {
-      const OpenDevice device(system_calls(), fd);
-      char name[128] = "";
-      (void)device.control(EVIOCGNAME(sizeof name), name);
       KeyBits keys{};
-      (void)device.control(EVIOCGBIT(EV_KEY, keys.size()), keys.data());
+      (void)device->control(EVIOCGBIT(EV_KEY, keys.size()), keys.data());
       if (std::ranges::none_of(keys, [](std::uint8_t byte) { return byte != 0; })) continue;
-      facts.name = name;
+      facts.name = input_name(*device);
     }
     all.push_back(std::move(facts));
   }
-  std::ranges::sort(all, {}, &KeyboardFacts::path);
   return all;
 }
 

@@ -14,8 +14,9 @@ class BudgetLogTest : public ::testing::Test {
   static StageLedger one(StageId id) { return StageLedger(row_of(id).name, budget_of(id, RenderClass::gpu)); }
 
   std::array<StageLedger, kStageCount> ledgers{
-      one(StageId::pedal),  one(StageId::tracker), one(StageId::camera), one(StageId::sync),
-      one(StageId::mapper), one(StageId::painter), one(StageId::panel),  one(StageId::session)};
+      one(StageId::pedal),   one(StageId::encoder), one(StageId::tracker),
+      one(StageId::camera),  one(StageId::sync),    one(StageId::mapper),
+      one(StageId::painter), one(StageId::panel),   one(StageId::session)};
   BudgetLog log;
   Instant now = instant_from_nanos(1'000'000'000);
 };

@@ -122,5 +122,42 @@ TEST(CartConfig, FollowsAScopeThatTurnsByWhatIsThere) {
   EXPECT_TRUE(tells(complaint(replaced(angled, "turn = \"marker\"", "turn = \"guess\"")), "notch"));
 }
 
+/// The angled demo, followed by an encoder of this section.
+std::string by_encoder(const std::string& section) {
+  std::string text = replaced(text_of(demo_cart().parent_path() / "demo-angled.toml"), "turn = \"marker\"",
+                              "turn = \"encoder\"");
+  return replaced(text, "second_rom = \"../tools/second.rom\"", "") + "\n[encoder]\n" + section;
+}
+
+TEST(CartConfig, FollowsAScopeThatTurnsByAnEncoder) {
+  const TemporaryFolder folder;
+  const auto config = read_cart(folder.write(
+      "cart.toml", by_encoder("kind = \"evdev\"\ndevice = \"/dev/input/by-path/knob\"\naxis = \"rel_x\"\n"
+                              "counts_per_turn = 2048\ncounts_rise = \"anticlockwise\"\n")));
+  ASSERT_TRUE(config) << config.error().message;
+  EXPECT_EQ(config->turn, TurnSource::encoder);
+  EXPECT_EQ(config->encoder.device.axis, "rel_x");
+  EXPECT_NEAR(scale_of(config->encoder).rad_per_count, -0.0030679615757712823, 1e-15);
+  EXPECT_TRUE(config->any_device());
+}
+
+TEST(CartConfig, RefusesAnEncoderThatCannotBe) {
+  const std::string knob = "kind = \"evdev\"\ndevice = \"event3\"\ncounts_rise = \"clockwise\"\n";
+  EXPECT_EQ(complaint(by_encoder(knob + "counts_per_turn = 2048\n")), "");
+  EXPECT_TRUE(tells(complaint(by_encoder(knob + "counts_per_turn = 0\n")), "counts_per_turn"));
+  EXPECT_TRUE(tells(complaint(by_encoder(knob)), "counts_per_turn"));
+  EXPECT_TRUE(tells(complaint(by_encoder(knob + "counts_per_turn = 2048\naxis = \"dial\"\n")), "rel_dial"));
+  EXPECT_TRUE(tells(complaint(by_encoder(knob + "counts_per_turn = 2048\ncounts_at_zero = 3\n")),
+                    "knows no place of its own"));
+  EXPECT_EQ(complaint(by_encoder(knob + "counts_per_turn = 2048\naxis = \"abs_x\"\ncounts_at_zero = 3\n")),
+            "");
+  EXPECT_TRUE(tells(complaint(by_encoder("kind = \"simulated\"\ncounts_per_turn = 2048\n"
+                                         "counts_rise = \"anticlockwise\"\n")),
+                    "rise clockwise"));
+  EXPECT_TRUE(tells(complaint(replaced(by_encoder(knob + "counts_per_turn = 2048\n"), "turn = \"encoder\"",
+                                       "turn = \"notch\"")),
+                    "nobody asks"));
+}
+
 }  // namespace
 }  // namespace orcart::testing

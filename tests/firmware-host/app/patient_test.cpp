@@ -117,6 +117,15 @@ TEST(Patient, AScopeThatIsFollowedStaysAtThePassportsTurnAndIsRefusedWhereThatLa
     EXPECT_EQ(patient->painting_blocked, "");
     EXPECT_EQ(patient->scope.lens.cx_px, 321.5);
   }
+  config.turn = TurnSource::encoder;
+  EXPECT_EQ(read_patient(config)->painting_blocked, "PAINTING BLOCKED: say [scope] turn_deg or --turn");
+  config.turn_rad = 0.5;
+  const auto told = read_patient(config);
+  EXPECT_EQ(told->painting_blocked, "");
+  EXPECT_EQ(told->scope.lens.cx_px, 321.5);
+  config.turn_rad.reset();
+  config.encoder.counts_at_zero = 12;
+  EXPECT_EQ(read_patient(config)->painting_blocked, "");
   const std::string text = text_of(angled);
   const auto refusal_of = [&](TurnSource source, const std::string& passport) {
     config.turn = source;

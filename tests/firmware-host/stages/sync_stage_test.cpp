@@ -114,7 +114,9 @@ TEST(SyncStageBlocked, FailsEveryPressAtOnceAndSelectsNothing) {
 /// so much.
 Refusal refusal_with(double turn_rad, double bent_rad, double* told_rad = nullptr) {
   ScopeModel scope;
-  scope.turning = Turning{.marker = TurnMarker::head, .R_SL = Eigen::Matrix3d::Identity()};
+  Turning& turning = scope.turning.emplace();
+  turning.marker = TurnMarker::head;
+  turning.R_SL.emplace(Eigen::Matrix3d::Identity());
   Lanes lanes{small_lanes()};
   SyncStage stage{{.history = {.period = 16ms, .needs_turn = true},
                    .matcher = {.turn = TurnSource::marker},
@@ -140,6 +142,62 @@ Refusal refusal_with(double turn_rad, double bent_rad, double* told_rad = nullpt
       if (order.kind == PaintOrderKind::fail) return order.refusal;
   }
   return Refusal::no_frame;
+}
+
+/// A press at 150 ms of a scope whose encoder stands at 0.2 rad until 140 ms and at 0.3 from then on, is
+/// heard every 5 ms until `gone_ms`, and begins another run at `lost_ms`. Its turn was told as 1 rad at 0.2.
+struct EncoderRun {
+  double gone_ms = 1e9, lost_ms = 1e9;
+  Refusal refusal = Refusal::no_frame;
+  double turn_rad = 0;
+  TurnLack lack = TurnLack::none;  ///< at the end
+};
+EncoderRun run_with_encoder(EncoderRun run) {
+  Lanes lanes{small_lanes()};
+  ScopeModel scope;
+  scope.turning.emplace();
+  SyncStage stage{{.history = {.period = 16ms, .needs_turn = true},
+                   .matcher = {.turn = TurnSource::encoder},
+                   .scope = scope,
+                   .encoder = {.told_rad = 1}},
+                  lanes};
+  (void)lanes.encoder_angles.try_push({.at = at_ms(0), .angle_rad = 0.2, .run = 1});
+  for (int ms = 0; ms < 600; ++ms) {
+    if (ms == 141) (void)lanes.encoder_angles.try_push({.at = at_ms(140), .angle_rad = 0.3, .run = 1});
+    if (ms == run.lost_ms) (void)lanes.encoder_angles.try_push({.at = at_ms(ms), .angle_rad = 0, .run = 2});
+    if (ms % 5 == 0)
+      lanes.encoder_news.post(
+          {.heard_until = at_ms(std::min<double>(ms, run.gone_ms)), .connected = ms <= run.gone_ms});
+    if (ms % 16 == 0) (void)lanes.poses.try_push(sample_at(at_ms(ms)));
+    if (ms == 150) (void)lanes.pedal.try_push({.kind = PedalEventKind::capture, .unit = 1, .at = at_ms(150)});
+    if (ms % 33 == 0) (void)lanes.frames.try_push(frame_at(at_ms(ms), static_cast<std::uint32_t>(ms / 33)));
+    (void)stage.step(at_ms(ms));
+    for (const Selection& one : all_of(lanes.selected)) {
+      run.refusal = one.matched.refusal;
+      run.turn_rad = one.matched.turn_rad;
+    }
+    for (const PaintOrder& order : all_of(lanes.orders))
+      if (order.kind == PaintOrderKind::fail) run.refusal = order.refusal;
+  }
+  ScopeNow now;
+  if (lanes.scope_now.take(now)) run.lack = now.turn_lack;
+  return run;
+}
+
+TEST(SyncStageTurn, IsToldByTheEncoderAtTheFramesInstant) {
+  const EncoderRun run = run_with_encoder({});
+  EXPECT_EQ(run.refusal, Refusal::none);
+  EXPECT_NEAR(run.turn_rad, 1.1, 1e-12);
+  EXPECT_EQ(run.lack, TurnLack::none);
+}
+
+TEST(SyncStageTurn, IsNotKnownWithoutTheEncoderNorAfterItLostItsZero) {
+  const EncoderRun gone = run_with_encoder({.gone_ms = 120});
+  EXPECT_EQ(gone.refusal, Refusal::turn_unknown);
+  EXPECT_EQ(gone.lack, TurnLack::encoder);
+  const EncoderRun lost = run_with_encoder({.lost_ms = 145});
+  EXPECT_EQ(lost.refusal, Refusal::turn_unknown);
+  EXPECT_EQ(lost.lack, TurnLack::encoder_zero);
 }
 
 TEST(SyncStageTurn, IsToldByTheSecondMarkerUnlessThatOneWasBent) {
