@@ -33,6 +33,8 @@ struct ProcedureScript {
   double turn_rad = 0;             ///< an angled scope's light post is turned to and fro, so far to each side
   double turn_every_s = 8;         ///< once to and fro, evenly, from no turn on
   double hide_second_at = -1;      ///< the tracker does not see the second marker for 1.1 s
+  double slip_second_at = -1;      ///< the second marker slips about the shaft, and stays so
+  double slip_second_rad = 0;      ///< by so much, as if the light post had turned
   double tremor_mm = 0.03;         ///< of the hand, about 9 Hz; its slow drift is five times as large
 };
 

@@ -98,7 +98,10 @@ TrueToolPose SimulatedWorld::pose_of(int tool, Instant at) const noexcept {
   if (tool == kScopeTool) return as_tool(X_TS.rotation, X_TS.translation_mm, seen(hidden_, at));
   if (tool != kSecondTool || !scope_.turning || !scope_.turning->R_SL)
     return as_tool(X_TS.rotation, X_TS.translation_mm, false);
-  const Pose<S, L> X_SL{.rotation = second_marker_at(*scope_.turning, turn_rad(at)),
+  const bool slipped =
+      script_.slip_second_at >= 0 && at >= start_ + from_seconds(script_.slip_second_at * script_.duration_s);
+  const double carried_rad = turn_rad(at) + (slipped ? script_.slip_second_rad : 0);
+  const Pose<S, L> X_SL{.rotation = second_marker_at(*scope_.turning, carried_rad),
                         .translation_mm = {40, 0, 0}};
   const Pose<T, L> X_TL = X_TS * X_SL;
   return as_tool(X_TL.rotation, X_TL.translation_mm, seen(second_hidden_, at));

@@ -145,7 +145,9 @@ void Cart::State::build_stages() {
                        .device_latency = from_seconds(config.tracker.latency_ms * 1e-3)},
       lanes);
   tracker_wake = std::make_unique<TrackerWake>(setup.ports.tracker, *driver);
-  if (config.turn == TurnSource::notch) notch = std::make_unique<NotchSearch>(patient.scope);
+  const bool by_notch = config.turn == TurnSource::notch;
+  const bool compared = !by_notch && patient.scope.turning && patient.scope.notch_rad;
+  if (by_notch || compared) notch = std::make_unique<NotchSearch>(patient.scope);
   camera = std::make_unique<CameraStage>(
       setup.ports.camera, setup.clock,
       StampSettings{.meaning = config.camera.stamp,
@@ -161,6 +163,7 @@ void Cart::State::build_stages() {
           .X_MR = patient.registration.X_MR,
           .scope = patient.scope,
           .encoder = {.told_rad = config.turn_rad, .absolute = config.encoder.counts_at_zero.has_value()},
+          .most_mismatch_rad = compared ? std::optional(config.most_mismatch_rad) : std::nullopt,
           .painting_blocked = !patient.painting_blocked.empty()},
       lanes);
   mapping = std::make_unique<MapperStage>(
@@ -192,6 +195,7 @@ void Cart::State::build_stages() {
           .simulated = config.simulated(),
           .software_rendering = context.render_class() == RenderClass::software,
           .degraded = !lacks.empty(),
+          .turn = config.turn,
           .painting_blocked = patient.painting_blocked,
           .submit_deadline = budget.dequeue_to_submitted.bound,
           .freshness = {.tracker_period = tracker_period, .video_period = period_of(config.camera.rate_hz)}});
@@ -398,6 +402,7 @@ Cart::Now Cart::now() const {
   now.camera = s.camera->fault();
   now.pedal = s.pedal->fault();
   now.panel = s.showing->fault();
+  now.mismatch_deg = s.sync->mismatch_deg();
   if (s.encoder) now.encoder = s.encoder->fault();
   return now;
 }

@@ -98,6 +98,7 @@ class Cart {
     /// What is wrong with each device; nothing_yet where nothing is.
     PortFault camera = PortFault::nothing_yet, pedal = PortFault::nothing_yet, panel = PortFault::nothing_yet,
               encoder = PortFault::nothing_yet;
+    int mismatch_deg = 0;  ///< SyncStage::mismatch_deg()
   };
   Now now() const;
 

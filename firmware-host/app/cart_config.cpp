@@ -38,6 +38,8 @@ void read_files(TomlReader& reader, CartConfig& config) {
       scope.number("most_residual_px", {.min = 0.01, .max = 50, .fallback = 1.0});
   config.passport.most_residual_mm =
       scope.number("most_residual_mm", {.min = 0.01, .max = 50, .fallback = 2.0});
+  config.most_mismatch_rad =
+      scope.number("most_mismatch_deg", {.min = 0.2, .max = 180, .fallback = 2.0}) * std::numbers::pi / 180;
   const TomlSection registration = reader.section("registration");
   config.registration = registration.path("file");
 }

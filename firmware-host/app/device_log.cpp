@@ -21,6 +21,12 @@ std::string DeviceLog::news(const Cart::Now& now) {
                                          : std::string(word_for(fault)) + "; tried again until it works") +
         "\n";
   }
+  if ((now.mismatch_deg != 0) != (mismatch_deg_ != 0))
+    lines += now.mismatch_deg != 0
+                 ? "turn: the notch in the pictures is " + std::to_string(now.mismatch_deg) +
+                       " degrees further round; nothing is painted until they agree\n"
+                 : std::string("turn: agrees with the notch again\n");
+  mismatch_deg_ = now.mismatch_deg;
   return lines;
 }
 

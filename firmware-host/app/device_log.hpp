@@ -14,6 +14,7 @@ class DeviceLog {
   std::string news(const Cart::Now& now);
 
  private:
+  int mismatch_deg_ = 0;
   std::array<PortFault, 4> known_{PortFault::nothing_yet, PortFault::nothing_yet, PortFault::nothing_yet,
                                   PortFault::nothing_yet};
 };

@@ -32,8 +32,8 @@ Result<void> check_followed(const CartConfig& config, const ScopeModel& scope) {
 Result<void> turn_scope(const CartConfig& config, Patient& patient) {
   constexpr const char* kSayIt = "PAINTING BLOCKED: say [scope] turn_deg or --turn";
   if (config.turn != TurnSource::told) {
-    const bool unsaid =
-        config.turn == TurnSource::encoder && !config.encoder.counts_at_zero && !config.turn_rad;
+    const bool unsaid = config.turn == TurnSource::encoder && !config.encoder.counts_at_zero &&
+                        !config.turn_rad && !patient.scope.notch_rad;
     if (unsaid && patient.painting_blocked.empty()) patient.painting_blocked = kSayIt;
     return check_followed(config, patient.scope);
   }

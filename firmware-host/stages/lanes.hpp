@@ -56,6 +56,7 @@ enum class TurnLack : std::uint8_t {
   notch,          ///< none in the picture
   encoder,        ///< not there
   encoder_zero,   ///< there, but nobody said where it is 0
+  mismatch,       ///< the pictures' notch says another one
 };
 
 /// Where the scope is now, for the outline.
@@ -65,6 +66,7 @@ struct ScopeNow {
   Pose<M, C> X_MC;
   double turn_rad = 0;                  ///< of the light post since the passport's turn
   TurnLack turn_lack = TurnLack::none;  ///< else the turn is not known, and pose.kind is none
+  int mismatch_deg = 0;                 ///< mismatch: by how much the notch is further round
 };
 
 /// A frame that is to be painted, for whom, and since when that is known.

@@ -3,6 +3,8 @@
 #include "firmware-host/stages/panel_stage.hpp"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 namespace orcart {
@@ -17,6 +19,8 @@ std::string_view words_for(Refusal refusal) {
       return "CAPTURE FAILED: no pose around the picture";
     case Refusal::turn_unknown:
       return "CAPTURE FAILED: nothing tells how far the scope is turned";
+    case Refusal::turn_mismatch:
+      return "CAPTURE FAILED: the notch says another turn";
     case Refusal::too_late:
       return "CAPTURE FAILED: the pose came too late";
     case Refusal::no_frame:
@@ -41,13 +45,28 @@ std::string_view words_for(TurnLack lack) {
     case TurnLack::notch:
       return "TURN NOT KNOWN: no notch in the picture; light its rim";
     case TurnLack::encoder:
-      return "TURN NOT KNOWN: the encoder is not there; check its cable";
+      return "TURN NOT KNOWN: no encoder; check its cable";
     case TurnLack::encoder_zero:
-      return "TURN NOT KNOWN: tell it and start again (orcart turn, --turn)";
+      return "TURN NOT KNOWN: tell it (orcart turn) and start again";
+    case TurnLack::mismatch:
     case TurnLack::none:
       break;
   }
   return "";
+}
+
+/// What a person should suspect where the notch says another turn.
+const char* suspect_for(TurnSource source) {
+  switch (source) {
+    case TurnSource::marker:
+      return "marker slipped?";
+    case TurnSource::encoder:
+      return "encoder slipped?";
+    case TurnSource::told:
+    case TurnSource::notch:
+      break;
+  }
+  return "head turned?";
 }
 
 Freshness shown_as(Liveness liveness) {
@@ -208,8 +227,7 @@ void PanelStage::choose_notice(Instant now) noexcept {
   if (!status.tool_seen) return notice(Notice::Level::warning, "TOOL NOT SEEN: clear its line of sight");
   if (!status.reference_seen)
     return notice(Notice::Level::warning, "REFERENCE NOT SEEN: clear its line of sight");
-  if (scope_.turn_lack != TurnLack::none && now - scope_.at < kScopeShownFor)
-    return notice(Notice::Level::warning, words_for(scope_.turn_lack));
+  if (scope_.turn_lack != TurnLack::none && now - scope_.at < kScopeShownFor) return notice_turn();
   if (tracker_.bumped_at != Instant{} && now - tracker_.bumped_at < kBumpShownFor)
     return notice(Notice::Level::warning, "TRACKER BUMPED: verify on a landmark");
   if (camera_.frozen) return notice(Notice::Level::warning, "VIDEO FROZEN? The picture repeats");
@@ -220,6 +238,15 @@ void PanelStage::choose_notice(Instant now) noexcept {
     return notice(Notice::Level::warning, "PEDAL: stuck; let it go");
   if (paint.undone_at != Instant{} && now - paint.undone_at < kNoticeTime)
     return notice(Notice::Level::info, "Taken back");
+}
+
+void PanelStage::notice_turn() noexcept {
+  if (scope_.turn_lack != TurnLack::mismatch)
+    return notice(Notice::Level::warning, words_for(scope_.turn_lack));
+  std::array<char, 96> text{};
+  std::snprintf(text.data(), text.size(), "TURN MISMATCH: %s %d deg off the notch",
+                suspect_for(settings_.turn), std::abs(scope_.mismatch_deg));
+  notice(Notice::Level::warning, text.data());
 }
 
 void PanelStage::notice(Notice::Level level, std::string_view text) noexcept {

@@ -26,6 +26,7 @@ struct PanelStageSettings {
   bool simulated = true;
   bool software_rendering = true;
   bool degraded = false;
+  TurnSource turn = TurnSource::told;
   std::string painting_blocked;  ///< the reason, shown as long as the program runs; empty: it is not
   Nanos
       submit_deadline{};  ///< from dequeue, the sum of the stages' bounds (topology): late is counted from it
@@ -75,6 +76,7 @@ class PanelStage final : public Stage {
   void fill_status(Instant now) noexcept;
   void tell_misses() noexcept;
   void choose_notice(Instant now) noexcept;
+  void notice_turn() noexcept;
   void notice(Notice::Level level, std::string_view text) noexcept;
 
   Parts parts_;

@@ -1,6 +1,9 @@
 // Every frame is ordered to be shown at once; only painting waits for its poses.
 #include "firmware-host/stages/sync_stage.hpp"
 
+#include <cmath>
+#include <numbers>
+
 namespace orcart {
 
 StepReport SyncStage::step(Instant now) noexcept {
@@ -36,8 +39,11 @@ std::uint32_t SyncStage::take_poses(Instant now) noexcept {
     const bool waits = settings_.matcher.turn == TurnSource::encoder &&
                        !encoder_turn_.decided(sample.measured_at) &&
                        now < sample.arrived_at + kLongestHearing;
-    unheard_ = waits ? std::optional(sample) : std::nullopt;
-    if (waits) break;
+    if (waits) {
+      unheard_ = sample;
+      break;
+    }
+    unheard_.reset();
     sample.turn_rad = turn_at(sample);
     (void)history_.push(sample);
   }
@@ -106,7 +112,7 @@ std::uint32_t SyncStage::take_frames(Instant now) noexcept {
   CapturedFrame frame;
   for (const std::size_t waiting = lanes_.frames.size(); count < waiting && lanes_.frames.try_pop(frame);
        ++count) {
-    if (settings_.matcher.turn == TurnSource::notch)
+    if (settings_.matcher.turn == TurnSource::notch || check_)
       frame.notch_turn_rad = notch_turn_.follow(frame.mid_exposure(), frame.notch_turn_rad);
     (void)lanes_.orders.try_push({.kind = PaintOrderKind::show, .frame = frame});
     if (const auto refused = matcher_.add(frame)) select(*refused, now);
@@ -116,11 +122,36 @@ std::uint32_t SyncStage::take_frames(Instant now) noexcept {
 
 void SyncStage::decide(Instant now) noexcept {
   for (std::size_t i = 0; i < FrameMatcher::kMostHeld; ++i) {
-    const auto matched = matcher_.next(now, history_, selector_.edge_grace());
+    auto matched = matcher_.next(now, history_, selector_.edge_grace());
     if (!matched) break;
+    if (check_) compare_with_notch(*matched);
+    if (check_ && check_->differs() && matched->refusal == Refusal::none)
+      matched->refusal = Refusal::turn_mismatch;
     select(*matched, now);
   }
   while (const auto failed = selector_.next_failed(now)) fail(*failed, failed->reason);  // bound: as may wait
+}
+
+// What is followed goes on being compared while nothing is painted: a turn that is put right paints again.
+void SyncStage::compare_with_notch(const MatchedFrame& matched) noexcept {
+  const CapturedFrame& frame = matched.frame;
+  if (!frame.notch_turn_rad) return;
+  if (settings_.matcher.turn == TurnSource::encoder && !encoder_turn_.zero_known()) find_zero(frame);
+  if (matched.pose.may_paint())
+    check_->compare(frame.mid_exposure(), matched.turn_rad, *frame.notch_turn_rad);
+  const double off_deg = check_->difference_rad() * 180 / std::numbers::pi;
+  mismatch_deg_.store(check_->differs() ? static_cast<int>(std::lround(off_deg)) : 0,
+                      std::memory_order_relaxed);
+}
+
+void SyncStage::find_zero(const CapturedFrame& frame) noexcept {
+  const Instant at = frame.mid_exposure() + settings_.matcher.tracker_against_video;
+  const auto angle = encoder_turn_.angle_at(at);
+  if (!angle) return;
+  if (angle->run != zero_run_) zero_check_.forget();
+  zero_run_ = angle->run;
+  zero_check_.compare(frame.mid_exposure(), angle->angle_rad, *frame.notch_turn_rad);
+  if (const auto zero = zero_check_.steady_rad(kZeroWithin_rad)) encoder_turn_.set_zero(zero_run_, *zero);
 }
 
 void SyncStage::select(const MatchedFrame& matched, Instant now) noexcept {
@@ -140,10 +171,12 @@ void SyncStage::fail(const CaptureRequest& request, Refusal why) noexcept {
 
 TurnLack SyncStage::lack_of_turn(Instant now, const PoseAnswer& pose) const noexcept {
   const TurnSource source = settings_.matcher.turn;
+  if (check_ && check_->differs()) return TurnLack::mismatch;
   if (source == TurnSource::told) return TurnLack::none;
   if (source == TurnSource::notch) return notch_turn_.now(now) ? TurnLack::none : TurnLack::notch;
   if (source == TurnSource::encoder && !encoder_turn_.connected()) return TurnLack::encoder;
-  if (source == TurnSource::encoder && !encoder_turn_.zero_known()) return TurnLack::encoder_zero;
+  if (source == TurnSource::encoder && !encoder_turn_.zero_known())
+    return check_ ? TurnLack::notch : TurnLack::encoder_zero;
   if (pose.kind != PoseKind::none || !history_.lacks_turn_around(now)) return TurnLack::none;
   return source == TurnSource::marker ? TurnLack::second_marker : TurnLack::encoder;
 }
@@ -153,6 +186,7 @@ void SyncStage::tell_scope(Instant now) noexcept {
   scope.turn_rad =
       settings_.matcher.turn == TurnSource::notch ? notch_turn_.now(now).value_or(0) : scope.pose.turn_rad;
   scope.turn_lack = lack_of_turn(now, scope.pose);
+  scope.mismatch_deg = mismatch_deg();
   if (scope.turn_lack != TurnLack::none) scope.pose.kind = PoseKind::none;
   if (scope.pose.kind != PoseKind::none)
     scope.X_MC = settings_.X_MR * scope.pose.X_RS * optics_at(settings_.scope, scope.turn_rad).X_SC;

@@ -62,6 +62,14 @@ class EncoderTurn {
     return settings_.absolute || (size_ > 0 && zero_ && zero_->run == back(0).run);
   }
 
+  /// The angle at t, with its run and without a zero; nothing where at(t) would tell nothing with any zero.
+  std::optional<EncoderAngle> angle_at(Instant t) const noexcept {
+    const EncoderAngle* const reading = reading_at(t);
+    return reading != nullptr ? std::optional(*reading) : std::nullopt;
+  }
+  /// The turn at angle 0 of a run: found by other means than being told.
+  void set_zero(std::uint32_t run, double turn_rad) noexcept { zero_ = Zero{run, turn_rad}; }
+
   /// -pi..pi. Nothing where the encoder was not there, was not heard yet, has no zero, or lost steps between
   /// the readings around t.
   std::optional<double> at(Instant t) const noexcept {

@@ -11,6 +11,7 @@ enum class Refusal : std::uint8_t {
   no_pose,          ///< the samples around its mid-exposure are too far apart
   tool_unseen,      ///< there are samples around it, but scope or reference was not seen in them
   turn_unknown,     ///< scope and reference were seen, but nothing tells how far the light post is turned
+  turn_mismatch,    ///< the pictures' notch says another turn
   too_late,         ///< the samples after it did not come within the longest wait
   queue_full,       ///< as many frames wait for their pose as may
   stamp_in_future,  ///< the driver stamped it after it was dequeued
@@ -29,6 +30,8 @@ constexpr std::string_view word_for(Refusal refusal) {
       return "tool not seen";
     case Refusal::turn_unknown:
       return "turn of the scope not known";
+    case Refusal::turn_mismatch:
+      return "turn and notch disagree";
     case Refusal::too_late:
       return "pose too late";
     case Refusal::queue_full:

@@ -62,7 +62,8 @@ std::unique_ptr<CartRig> CartRig::create(const RigWish& wish) {
     rig->config.scope = passport_of(*wish.angled);
     rig->config.turn = wish.angled->follow;
     if (wish.angled->follow == TurnSource::told || wish.angled->follow == TurnSource::encoder)
-      rig->config.turn_rad = 0;
+      rig->config.turn_rad = wish.angled->told_rad;
+    rig->config.most_mismatch_rad = wish.angled->most_mismatch_deg * std::numbers::pi / 180;
     rig->config.tracker.second = wish.angled->follow == TurnSource::marker;
     rig->config.simulation.marker_noise_mm = wish.angled->marker_noise_mm;
     rig->config.simulation.turn_rad = wish.script.turn_rad;

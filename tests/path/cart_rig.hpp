@@ -19,6 +19,8 @@ struct AngledWish {
   TurnSource follow = TurnSource::marker;
   double marker_noise_mm = 0;
   EncoderFaults encoder{};
+  std::optional<double> told_rad = 0;  ///< told, encoder
+  double most_mismatch_deg = 2;
 };
 
 /// What a test wants to be different from the demo.

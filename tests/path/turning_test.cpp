@@ -145,7 +145,8 @@ TEST_P(Followed, ByAnEncoderPaintsAsWellAsAScopeThatStands) {
 }
 
 TEST_P(Followed, NotAtAllPaintsMuchBesideThePlace) {
-  const auto turns = finished(turning({.view_deg = GetParam(), .follow = TurnSource::told}));
+  const auto turns =
+      finished(turning({.view_deg = GetParam(), .follow = TurnSource::told, .most_mismatch_deg = 180}));
   ASSERT_TRUE(turns);
   const PaintingError error = painting_error(*turns);
   record("mean_mm", error.mean_mm);
@@ -206,10 +207,12 @@ TEST(TurnUnknown, APressWithoutANotchInThePictureFailsAndThePanelSaysWhy) {
 TEST(TurnUnknown, APressWhileTheEncoderIsUnpluggedFailsAndSoDoesOneAfterItForItsZeroIsLost) {
   auto rig = CartRig::create(
       turning({.follow = TurnSource::encoder, .encoder = {.gone_at = 2500ms, .back_at = 3600ms}}));
-  ASSERT_TRUE(rig && rig->arm());
+  ASSERT_TRUE(rig);
+  rig->patient.scope.notch_rad.reset();  // which would tell the zero
+  ASSERT_TRUE(rig->arm());
   rig->run_until(2700ms);
   const auto before = rig->painting();
-  EXPECT_NE(std::string(rig->cart->status().notice.text.data()).find("TURN NOT KNOWN: the encoder is not"),
+  EXPECT_NE(std::string(rig->cart->status().notice.text.data()).find("TURN NOT KNOWN: no encoder"),
             std::string::npos)
       << rig->cart->status().notice.text.data();
   EXPECT_EQ(rig->cart->now().encoder, PortFault::disconnected);
@@ -228,13 +231,94 @@ TEST(TurnUnknown, APressWhileTheEncoderIsUnpluggedFailsAndSoDoesOneAfterItForIts
 
 TEST(TurnUnknown, APressAfterTheKernelDroppedTheEncodersStepsFails) {
   auto rig = CartRig::create(turning({.follow = TurnSource::encoder, .encoder = {.lost_at = 2500ms}}));
-  ASSERT_TRUE(rig && rig->arm());
+  ASSERT_TRUE(rig);
+  rig->patient.scope.notch_rad.reset();
+  ASSERT_TRUE(rig->arm());
   rig->run_to_end();
   ASSERT_EQ(rig->cart->captures().size(), 3u);
   EXPECT_EQ(rig->cart->captures().at(0).refusal, Refusal::none);
   EXPECT_EQ(rig->cart->captures().at(1).refusal, Refusal::turn_unknown);
   EXPECT_EQ(rig->cart->captures().at(2).refusal, Refusal::turn_unknown);
 }
+
+TEST(TurnUnknown, AnEncoderThatWasUnpluggedGetsItsZeroByTheNotch) {
+  RigWish wish = turning({.follow = TurnSource::encoder,
+                          .encoder = {.gone_at = 1500ms, .back_at = 2000ms},
+                          .told_rad = std::nullopt});
+  wish.camera_hz = 30;
+  auto rig = finished(wish);
+  ASSERT_TRUE(rig);
+  ASSERT_EQ(rig->cart->captures().size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(rig->cart->captures().at(i).refusal, Refusal::none) << i;
+  record("turn_deg", worst_turn_error_deg(*rig));
+  EXPECT_LE(worst_turn_error_deg(*rig), 0.3);
+}
+
+std::string notice_of(const CartRig& rig) {
+  return rig.cart->status().notice.text.data();
+}
+
+struct Slip {
+  TurnSource follow = TurnSource::marker;
+  double marker_noise_mm = 0;
+  std::string suspect;
+};
+/// A turn that is told stands, unless a test says otherwise.
+class Slipped : public ::testing::TestWithParam<Slip> {
+ protected:
+  static RigWish wish() {
+    const Slip& slip = GetParam();
+    const AngledWish angled{.follow = slip.follow, .marker_noise_mm = slip.marker_noise_mm};
+    RigWish wish = slip.follow == TurnSource::told ? still(angled) : turning(angled);
+    wish.camera_hz = 30;
+    return wish;
+  }
+  static bool mismatch(const Status& status) {
+    return std::string(status.notice.text.data()).find("TURN MISMATCH") != std::string::npos;
+  }
+};
+
+TEST_P(Slipped, IsNoticedWithinASecondAndNothingIsPaintedSince) {
+  const bool told = GetParam().follow == TurnSource::told;
+  RigWish wish = told ? turning({.follow = TurnSource::told}) : Slipped::wish();
+  wish.camera_hz = 30;
+  wish.script.slip_second_at = 2.0 / wish.duration_s;
+  wish.script.slip_second_rad = 6 * kDegree;
+  wish.angled->encoder = {.slip_at = 2000ms, .slip_rad = 6 * kDegree};
+  auto rig = CartRig::create(wish);
+  ASSERT_TRUE(rig && rig->arm());
+  const Instant slipped = rig->at(told ? 0ms : 2000ms);  // what was told is wrong from the start
+  rig->run_until(slipped - rig->at(0ms));
+  EXPECT_EQ(rig->cart->now().mismatch_deg, 0);
+  const Nanos noticed = rig->until(slipped, mismatch);
+  record("noticed_after_s", seconds(noticed));
+  EXPECT_LE(noticed, 1s);
+  EXPECT_NE(notice_of(*rig).find(GetParam().suspect), std::string::npos) << notice_of(*rig);
+  if (!told) {
+    EXPECT_NE(notice_of(*rig).find(" 6 deg"), std::string::npos) << notice_of(*rig);
+    EXPECT_EQ(rig->cart->now().mismatch_deg, -6);
+  }
+  const auto before = rig->painting();
+  rig->run_to_end();
+  ASSERT_EQ(rig->cart->captures().size(), 3u);
+  EXPECT_EQ(rig->cart->captures().at(1).refusal, Refusal::turn_mismatch);
+  EXPECT_EQ(rig->cart->captures().at(2).refusal, Refusal::turn_mismatch);
+  EXPECT_EQ(rig->painting(), before);
+}
+
+TEST_P(Slipped, IsNotSuspectedWhereNothingSlips) {
+  auto rig = CartRig::create(Slipped::wish());
+  ASSERT_TRUE(rig && rig->arm());
+  EXPECT_EQ(rig->until(rig->at(0ms), mismatch), Nanos::max());
+  rig->run_to_end();
+  ASSERT_EQ(rig->cart->captures().size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(rig->cart->captures().at(i).refusal, Refusal::none) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(Turning, Slipped,
+                         ::testing::Values(Slip{TurnSource::marker, 0.07, "marker slipped?"},
+                                           Slip{TurnSource::encoder, 0, "encoder slipped?"},
+                                           Slip{TurnSource::told, 0, "head turned?"}));
 
 TEST(TurnedSession, IsPaintedAgainFromTheRecordingToTheByte) {
   const TemporaryFolder folder;

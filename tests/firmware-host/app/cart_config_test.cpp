@@ -111,6 +111,7 @@ TEST(CartConfig, FollowsAScopeThatTurnsByWhatIsThere) {
   EXPECT_TRUE(config->tracker.second);
   EXPECT_EQ(config->tracker.second_rom.filename(), "second.rom");
   EXPECT_NEAR(config->simulation.turn_rad, 1.0472, 1e-4);
+  EXPECT_NEAR(config->most_mismatch_rad, 0.034907, 1e-6);
 
   const std::string second = "second_rom = \"../tools/second.rom\"";
   EXPECT_TRUE(tells(complaint(replaced(angled, second, "")), "wants the second marker's definition"));
@@ -120,6 +121,9 @@ TEST(CartConfig, FollowsAScopeThatTurnsByWhatIsThere) {
   EXPECT_TRUE(tells(complaint(replaced(angled, "turn = \"marker\"", "turn = \"marker\"\nturn_deg = 10")),
                     "either told or followed"));
   EXPECT_TRUE(tells(complaint(replaced(angled, "turn = \"marker\"", "turn = \"guess\"")), "notch"));
+  EXPECT_TRUE(
+      tells(complaint(replaced(angled, "turn = \"marker\"", "turn = \"marker\"\nmost_mismatch_deg = 0")),
+            "most_mismatch_deg"));
 }
 
 /// The angled demo, followed by an encoder of this section.

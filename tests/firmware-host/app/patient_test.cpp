@@ -118,6 +118,8 @@ TEST(Patient, AScopeThatIsFollowedStaysAtThePassportsTurnAndIsRefusedWhereThatLa
     EXPECT_EQ(patient->scope.lens.cx_px, 321.5);
   }
   config.turn = TurnSource::encoder;
+  EXPECT_EQ(read_patient(config)->painting_blocked, "") << "the notch tells the zero";
+  config.scope = folder.write("no-notch.toml", replaced(text_of(angled), "notch_rad = -1.5\n", ""));
   EXPECT_EQ(read_patient(config)->painting_blocked, "PAINTING BLOCKED: say [scope] turn_deg or --turn");
   config.turn_rad = 0.5;
   const auto told = read_patient(config);
