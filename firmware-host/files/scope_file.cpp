@@ -91,6 +91,9 @@ void read_rest(TomlReader& reader, ScopeModel& scope) {
   const TomlSection covariance = reader.section("covariance");
   if (auto lens = read_lens_covariance(covariance, "lens", scope.lens.model)) scope.lens_covariance = lens;
   scope.hand_eye_covariance = read_twist_covariance(covariance, "hand_eye");
+  constexpr std::array<int, 1> kThree{3};
+  if (const auto window = covariance_from_toml(covariance, "window", kThree))
+    scope.window_covariance = Eigen::Matrix3d(*window);
 }
 
 /// Row by row.

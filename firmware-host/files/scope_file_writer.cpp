@@ -121,6 +121,9 @@ std::string covariance_text(const ScopeModel& scope) {
   if (scope.hand_eye_covariance)
     out += "# Of a small motion of C in its own axes: x y z in mm, rotation vector in rad.\n" +
            square("hand_eye", *scope.hand_eye_covariance);
+  if (scope.window_covariance)
+    out +=
+        "# Of the window's place, X_CE, along C's axes in mm.\n" + square("window", *scope.window_covariance);
   return out;
 }
 

@@ -63,6 +63,7 @@ struct ScopeModel {
   /// they were independent.
   std::optional<LensCovariance> lens_covariance;
   std::optional<TwistCovariance> hand_eye_covariance;  ///< of X_SC: a twist in C
+  std::optional<Eigen::Matrix3d> window_covariance;    ///< of X_CE's place in C, mm^2
 };
 
 }  // namespace orcart

@@ -92,6 +92,10 @@ ScopeModel turned(const ScopeModel& scope, double turn_rad) {
   if (scope.turning && scope.hand_eye_covariance)
     at.hand_eye_covariance = covariance_seen_from(
         Pose<C, C>{.rotation = about(Eigen::Vector3d::UnitZ(), -turn_rad)}, *scope.hand_eye_covariance);
+  if (scope.turning && scope.window_covariance) {
+    const Eigen::Matrix3d round = about(Eigen::Vector3d::UnitZ(), turn_rad);
+    at.window_covariance = round * *scope.window_covariance * round.transpose();
+  }
   at.lens = optics.lens;
   at.mask = optics.mask;
   at.X_SC = optics.X_SC;

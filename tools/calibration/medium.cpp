@@ -160,6 +160,10 @@ Result<MediumConversion> to_fluid(const ScopeModel& air, Medium fluid, const Med
   back.translation_mm.z() = -result.viewpoint_mm;
   scope.X_SC = air.X_SC * back;
   scope.X_CE = back.inverse() * air.X_CE;
+  // Its place along the axis grows by the index, and its error with it.
+  const Eigen::Vector3d grown(1, 1, index);
+  if (air.window_covariance)
+    scope.window_covariance = grown.asDiagonal() * *air.window_covariance * grown.asDiagonal();
   if (!monotone_to_edge(scope.lens, scope.mask, {scope.width_px, scope.height_px}))
     return fail("the lens in fluid folds the picture inside its mask's circle; calibrate in the fluid");
   scope.cone_half_angle_rad = cone_half_angle_rad(scope.lens, scope.mask, {scope.width_px, scope.height_px});

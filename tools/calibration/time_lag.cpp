@@ -9,6 +9,7 @@
 
 #include "tools/calibration/movement_misfit.hpp"
 #include "tools/registration/json_text.hpp"
+#include "tools/registration/students_t.hpp"
 
 namespace orcart {
 namespace {
@@ -17,14 +18,6 @@ constexpr double kApart_s = 0.060;    ///< lags this far from the best are anoth
 constexpr double kAlike = 1.3;        ///< and must fit worse by this factor
 constexpr double kLargestWeight = 4;  ///< of one movement over the median's
 constexpr std::size_t kFewestSamples = 12;
-
-/// The two-sided 95 % quantile of Student's t.
-double students_t(std::size_t degrees) {
-  constexpr std::array<double, 13> kTable{12.706, 12.706, 4.303, 3.182, 2.776, 2.571, 2.447,
-                                          2.365,  2.306,  2.262, 2.228, 2.201, 2.179};
-  if (degrees < kTable.size()) return kTable[degrees];
-  return 1.960 + 2.45 / static_cast<double>(degrees) + 2.4 / static_cast<double>(degrees * degrees);
-}
 
 /// The least of a sampled curve, between its samples by the parabola through three.
 struct Least {

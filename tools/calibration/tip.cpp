@@ -6,11 +6,13 @@
 
 #include "tools/calibration/board_pose.hpp"
 #include "tools/registration/json_text.hpp"
+#include "tools/registration/students_t.hpp"
 
 namespace orcart {
 namespace {
 
 constexpr double kFarthestScale = 0.05;
+constexpr double kNormal95 = 1.96;
 
 Result<void> check(const std::vector<TipView>& views) {
   if (views.size() < 3)
@@ -64,6 +66,46 @@ void measure(const std::vector<TipView>& views, TipFit& fit) {
   fit.deviation_mm = std::sqrt(spread2 / (count - 1) / count);
 }
 
+/// The views' mean distance from the optical centre, mm.
+Result<double> mean_distance_mm(const std::vector<const BoardView*>& views, const Lens& lens) {
+  double sum = 0;
+  for (const BoardView* view : views) {
+    const auto X_CB = board_pose(*view, lens);
+    if (!X_CB) return tl::unexpected(X_CB.error());
+    const auto distance = axis_distance_mm(*X_CB);
+    if (!distance) return tl::unexpected(distance.error());
+    sum += *distance;
+  }
+  return sum / static_cast<double>(views.size());
+}
+
+/// What an uncertain lens makes of the window's place: all views move with it. Central differences of a tenth
+/// of a standard deviation.
+double deviation_by_lens_mm(const std::vector<const BoardView*>& views, const Lens& lens,
+                            const LensCovariance& covariance) {
+  constexpr double kStep = 0.1;
+  LensStep slope = LensStep::Zero();
+  for (int i = 0; i < kLensNumbers; ++i) {
+    LensStep step = LensStep::Zero();
+    step[i] = kStep * std::sqrt(covariance(i, i));
+    if (step[i] <= 0) continue;
+    const auto above = mean_distance_mm(views, stepped(lens, step)),
+               below = mean_distance_mm(views, stepped(lens, -step));
+    if (above && below) slope[i] = (*above - *below) / (2 * step[i]);
+  }
+  return std::sqrt(std::max(0.0, slope.dot(covariance * slope)));
+}
+
+/// Few views know their own scatter badly: the deviation of both parts, as much wider as Student's 95 % is
+/// than the normal one, with the degrees of freedom of the sum (Satterthwaite 1946).
+double together_mm(double by_views_mm, std::size_t views, double by_lens_mm) {
+  constexpr double kMostDegrees = 1e6;
+  const double both_mm = std::hypot(by_views_mm, by_lens_mm);
+  const double degrees =
+      by_views_mm > 0 ? static_cast<double>(views - 1) * std::pow(both_mm / by_views_mm, 4) : kMostDegrees;
+  return students_t(static_cast<std::size_t>(std::min(degrees, kMostDegrees))) / kNormal95 * both_mm;
+}
+
 }  // namespace
 
 Result<double> axis_distance_mm(const Pose<C, B>& X_CB) {
@@ -99,17 +141,13 @@ Result<TipFit> fit_tip(const std::vector<TipView>& views) {
   return fit;
 }
 
-Result<TipCalibration> calibrate_tip(const TipCommand& command, const ScopeModel& scope,
-                                     const Progress& progress) {
-  if (command.distances_mm.size() != command.images.size())
-    return fail("--distances names " + std::to_string(command.distances_mm.size()) + " distances for " +
-                std::to_string(command.images.size()) + " pictures; one a picture is accepted");
-  const auto seen = see_boards(command.images, command.pattern, progress);
-  if (!seen) return tl::unexpected(seen.error());
+Result<TipCalibration> calibrate_tip(const std::vector<BoardView>& views,
+                                     const std::vector<double>& distances_mm, const ScopeModel& scope) {
   TipCalibration result{.scope = scope};
   std::vector<std::string> notes;
-  for (std::size_t i = 0; i < seen->views.size(); ++i) {
-    const BoardView& view = seen->views[i];
+  std::vector<const BoardView*> used;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const BoardView& view = views[i];
     const std::string name = view.image.filename().string();
     if (auto sized = check_size(view, scope); !sized) return tl::unexpected(sized.error());
     if (view.corners.empty()) {
@@ -120,15 +158,36 @@ Result<TipCalibration> calibrate_tip(const TipCommand& command, const ScopeModel
     if (!X_CB) return tl::unexpected(X_CB.error());
     const auto distance = axis_distance_mm(*X_CB);
     if (!distance) return fail(view.image.string() + ": " + distance.error().message);
-    result.views.push_back({.name = name, .known_mm = command.distances_mm[i], .camera_mm = *distance});
+    result.views.push_back({.name = name, .known_mm = distances_mm[i], .camera_mm = *distance});
+    used.push_back(&view);
   }
   auto fit = fit_tip(result.views);
   if (!fit) return tl::unexpected(fit.error());
   result.fit = std::move(*fit);
   result.fit.notes.insert(result.fit.notes.begin(), notes.begin(), notes.end());
+  if (scope.lens_covariance)
+    result.lens_mm = deviation_by_lens_mm(used, scope.lens, *scope.lens_covariance);
+  else
+    result.fit.notes.emplace_back(
+        "the passport does not say how well its lens is known, so what that adds to the window's place is "
+        "left "
+        "out: run orcart calibrate camera again");
+  result.deviation_mm = together_mm(result.fit.deviation_mm, result.views.size(), result.lens_mm);
   result.scope.X_CE = {};
   result.scope.X_CE.translation_mm.z() = result.fit.window_mm;
+  result.scope.window_covariance = Eigen::Matrix3d::Zero();
+  (*result.scope.window_covariance)(2, 2) = result.deviation_mm * result.deviation_mm;
   return result;
+}
+
+Result<TipCalibration> calibrate_tip(const TipCommand& command, const ScopeModel& scope,
+                                     const Progress& progress) {
+  if (command.distances_mm.size() != command.images.size())
+    return fail("--distances names " + std::to_string(command.distances_mm.size()) + " distances for " +
+                std::to_string(command.images.size()) + " pictures; one a picture is accepted");
+  const auto seen = see_boards(command.images, command.pattern, progress);
+  if (!seen) return tl::unexpected(seen.error());
+  return calibrate_tip(seen->views, command.distances_mm, scope);
 }
 
 }  // namespace orcart

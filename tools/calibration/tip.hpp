@@ -20,7 +20,7 @@ struct TipView {
 
 struct TipFit {
   double window_mm = 0;     ///< of E before C on the optical axis: X_CE's z
-  double deviation_mm = 0;  ///< standard deviation of it
+  double deviation_mm = 0;  ///< standard deviation of it, by the views' scatter about it
   double scale = 1;         ///< by which the camera's distances grow faster than the known ones
   double scale_deviation = 0;
   std::vector<double> errors_mm;  ///< of each view's distance with the window placed by all other views
@@ -41,10 +41,17 @@ struct TipCommand {
   Pattern pattern;
 };
 struct TipCalibration {
-  ScopeModel scope;  ///< the passport given, with X_CE
+  ScopeModel scope;  ///< the passport given, with X_CE and its covariance
   std::vector<TipView> views;
   TipFit fit;
+  double lens_mm =
+      0;  ///< standard deviation of the window's place by what the lens's calibration leaves open
+  double deviation_mm = 0;  ///< of the window's place, all in all: as the passport has it
 };
+
+/// The same from boards already found. One distance a view; a view without corners is noted and not used.
+Result<TipCalibration> calibrate_tip(const std::vector<BoardView>& views,
+                                     const std::vector<double>& distances_mm, const ScopeModel& scope);
 Result<TipCalibration> calibrate_tip(const TipCommand& command, const ScopeModel& scope,
                                      const Progress& progress);
 

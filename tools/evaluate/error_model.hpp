@@ -55,7 +55,8 @@ struct ErrorModel {
   std::optional<Eigen::Matrix<double, 6, 6>> hand_eye_root;      ///< of a twist in C
   std::optional<Eigen::Matrix<double, 6, 6>> registration_root;  ///< of a twist in R
   std::optional<Eigen::Matrix<double, 11, 11>> lens_root;        ///< of the lens's numbers, as LensStep
-  bool time_told = false;                                        ///< time_s is not the assumed one
+  std::optional<Eigen::Matrix3d> window_root;  ///< of the window's place in C, mm: the tip's
+  bool time_told = false;                      ///< time_s is not the assumed one
 };
 
 }  // namespace orcart

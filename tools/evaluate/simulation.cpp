@@ -58,14 +58,24 @@ class Setup {
     for (const Eigen::Vector3d& place : places) outcome_.tracking.push_back((place - mean).norm());
   }
 
-  /// Of E in R; the errors of hand-eye stay, the tracker's are new in every trial.
+  /// How far the window is believed beside its place in C; from a stream of its own, so that what else is
+  /// drawn does not depend on whether the passport states it.
+  Eigen::Vector3d drawn_window() const {
+    if (!request_.model.window_root) return Eigen::Vector3d::Zero();
+    RandomStream random(errors_random_, 2);
+    return *request_.model.window_root * random.gaussian3();
+  }
+
+  /// Of E in R; the errors of hand-eye and window stay, the tracker's are new in every trial.
   Eigen::Vector3d measured_tip(const Capture& capture, const DrawnErrors& fixed) {
     DrawnErrors now = fixed;
     now.registration = Twist::Zero();
     now.time_s = 0;
     now.scope = drawn_body(scene_.scope_markers_mm, request_.model.marker_rms_mm, random_);
     now.reference = drawn_body(scene_.reference_markers_mm, request_.model.marker_rms_mm, random_);
-    const Pose<M, E> X_ME = believed_pose(scene_, capture, now) * scene_.scope.X_CE;
+    Pose<C, E> X_CE = scene_.scope.X_CE;
+    X_CE.translation_mm += drawn_window();
+    const Pose<M, E> X_ME = believed_pose(scene_, capture, now) * X_CE;
     return X_ME.translation_mm;
   }
 

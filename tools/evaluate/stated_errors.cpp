@@ -53,6 +53,7 @@ ErrorModel with_stated(const ErrorModel& assumed, const ScopeModel& scope,
     model.lens_focal = std::sqrt(lens(0, 0)) / scope.lens.fx_px;
     model.lens_edge_px = lens_deviation_px(scope.lens, lens, edge_rad(scope));
   }
+  if (scope.window_covariance) model.window_root = root_of(*scope.window_covariance);
   if (registration.covariance) model.registration_root = root_of(*registration.covariance);
   return model;
 }
@@ -75,7 +76,8 @@ std::string sources_text(const ErrorModel& m) {
                       word_for(m.lens_root.has_value(), "passport")) +
          "registration " + registration +
          json::format("; medium %.2f %% (assumed); time %.1f ms (%s)", 100 * m.refraction, 1e3 * m.time_s,
-                      word_for(m.time_told, "told"));
+                      word_for(m.time_told, "told")) +
+         (m.window_root ? json::format("; window %.2f mm (passport)", m.window_root->norm()) : std::string());
 }
 
 std::string sources_json(const ErrorModel& m) {

@@ -1,4 +1,5 @@
 // orcart calibrate medium: a passport made in air, for use in fluid.
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -24,6 +25,7 @@ struct Arguments {
   Medium medium = Medium::saline;
   double window_mm = 0;
   MediumDoubt doubt;
+  bool doubt_told = false;
   bool json = false;
 };
 
@@ -46,10 +48,15 @@ std::string answer(const Arguments& arguments, const ScopeModel& air, const Medi
              fluid.added_px, fluid.added_mm, arguments.doubt.window_mm, arguments.doubt.index);
 }
 
-Result<void> run(const Arguments& arguments) {
+Result<void> run(Arguments& arguments) {
   auto air = read_scope(arguments.scope);
   if (!air) return tl::unexpected(air.error());
-  if (arguments.window_mm > 0) air->X_CE.translation_mm = {0, 0, arguments.window_mm};
+  if (arguments.window_mm > 0) {
+    air->X_CE.translation_mm = {0, 0, arguments.window_mm};
+    air->window_covariance = Eigen::Vector3d(0, 0, arguments.doubt.window_mm).cwiseAbs2().asDiagonal();
+  } else if (air->window_covariance && !arguments.doubt_told) {
+    arguments.doubt.window_mm = std::sqrt((*air->window_covariance)(2, 2));
+  }
   const auto fluid = to_fluid(*air, arguments.medium, arguments.doubt);
   if (!fluid) return fail(arguments.scope + ": " + fluid.error().message);
   if (!arguments.page.empty())
@@ -76,16 +83,19 @@ void add_medium(CLI::App& calibrate, int& exit_code) {
       ->required();
   verb->add_option("--window-mm", arguments->window_mm, "from the optical centre to the window's outside, mm")
       ->check(CLI::Range(0.01, 50.0));
-  verb->add_option("--window-doubt", arguments->doubt.window_mm, "its standard deviation, mm")
-      ->check(CLI::Range(0.0, 20.0))
-      ->capture_default_str();
+  const CLI::Option* doubt =
+      verb->add_option("--window-doubt", arguments->doubt.window_mm,
+                       "its standard deviation, mm; the passport's own where --window-mm is not given")
+          ->check(CLI::Range(0.0, 20.0))
+          ->capture_default_str();
   verb->add_option("--index-doubt", arguments->doubt.index, "standard deviation of the fluid's index")
       ->check(CLI::Range(0.0, 0.2))
       ->capture_default_str();
   verb->add_option("--out", arguments->out, "the passport for the fluid")->required();
   verb->add_option("--page", arguments->page, "also one HTML page with the lens in both media");
   verb->add_flag("--json", arguments->json, "the figures as JSON");
-  verb->callback([arguments, &exit_code] {
+  verb->callback([arguments, doubt, &exit_code] {
+    arguments->doubt_told = doubt->count() > 0;
     const auto done = run(*arguments);
     if (!done) std::fprintf(stderr, "orcart calibrate medium: %s\n", done.error().message.c_str());
     exit_code = done ? 0 : 1;

@@ -28,9 +28,14 @@ std::string answer(const TipCalibration& c, bool as_json) {
   const TipFit& fit = c.fit;
   std::vector<std::string> views, notes;
   std::string out = json::format(
-      "the window lies %.3f +- %.3f mm before the optical centre; error of a distance, each view left out in "
-      "turn: mean %.3f, s.d. %.3f, max %.3f mm over %zu views\n",
-      fit.window_mm, fit.deviation_mm, fit.mean_mm, fit.sd_mm, fit.worst_mm, c.views.size());
+      "the window lies %.3f +- %.3f mm before the optical centre (95 %%: %.3f to %.3f; of the deviation the "
+      "views "
+      "leave %.3f, the lens %.3f)\nerror of a distance, each view left out in turn: mean %.3f, s.d. %.3f, "
+      "max %.3f "
+      "mm over %zu views\n",
+      fit.window_mm, c.deviation_mm, fit.window_mm - 1.96 * c.deviation_mm,
+      fit.window_mm + 1.96 * c.deviation_mm, fit.deviation_mm, c.lens_mm, fit.mean_mm, fit.sd_mm,
+      fit.worst_mm, c.views.size());
   for (std::size_t i = 0; i < c.views.size(); ++i) {
     const TipView& v = c.views[i];
     out += json::format("  %-32s known %8.3f mm, from the optical centre %8.3f mm, error %+.3f mm\n",
@@ -45,7 +50,11 @@ std::string answer(const TipCalibration& c, bool as_json) {
   }
   if (!as_json) return out;
   return "{\"X_CE\": " + json::pose(c.scope.X_CE) + ",\n \"window_mm\": " + json::number(fit.window_mm) +
-         ", \"deviation_mm\": " + json::number(fit.deviation_mm) + ", \"scale\": " + json::number(fit.scale) +
+         ", \"deviation_mm\": " + json::number(c.deviation_mm) +
+         ", \"deviation_by_views_mm\": " + json::number(fit.deviation_mm) +
+         ", \"deviation_by_lens_mm\": " + json::number(c.lens_mm) +
+         ", \"covariance\": " + json::numbers(Eigen::VectorXd(c.scope.window_covariance->reshaped())) +
+         ", \"scale\": " + json::number(fit.scale) +
          ", \"scale_deviation\": " + json::number(fit.scale_deviation) +
          ", \"mean_mm\": " + json::number(fit.mean_mm) + ", \"sd_mm\": " + json::number(fit.sd_mm) +
          ", \"max_mm\": " + json::number(fit.worst_mm) + ",\n \"views\": " + json::list(views) +

@@ -115,6 +115,7 @@ ScopeModel scope_with(LensModel model) {
   TwistCovariance hand_eye = TwistCovariance::Constant(1e-7 / 3);
   hand_eye.diagonal() << 0.01, 0.02, 0.03, 1e-6, 2e-6, 3e-6;
   scope.hand_eye_covariance = hand_eye;
+  scope.window_covariance = Eigen::Vector3d(0, 1e-4, 1.0 / 7).asDiagonal();
   scope.turning =
       Turning{.view_angle_rad = 0.5,
               .centre_px = {317.25, 1.0 / 3},
@@ -154,6 +155,8 @@ TEST_P(EachLens, ComesBackAsItWasWritten) {
   ASSERT_TRUE(back->lens_covariance && back->hand_eye_covariance);
   EXPECT_EQ(*back->lens_covariance, *scope.lens_covariance);
   EXPECT_EQ(*back->hand_eye_covariance, *scope.hand_eye_covariance);
+  ASSERT_TRUE(back->window_covariance);
+  EXPECT_EQ(*back->window_covariance, *scope.window_covariance);
   ASSERT_TRUE(back->turning);
   EXPECT_EQ(back->turning->centre_px, scope.turning->centre_px);
   EXPECT_EQ(back->turning->marker, TurnMarker::head);
@@ -185,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(ScopeFile, EachLens,
 TEST(ScopeFile, APassportWithoutCovariancesIsAsGoodAsEver) {
   const auto scope = read_text(kPassport);
   ASSERT_TRUE(scope);
-  EXPECT_FALSE(scope->lens_covariance || scope->hand_eye_covariance);
+  EXPECT_FALSE(scope->lens_covariance || scope->hand_eye_covariance || scope->window_covariance);
 }
 
 TEST(ScopeFile, KeepsFewerRowsWhereFewerCoefficientsWereFree) {

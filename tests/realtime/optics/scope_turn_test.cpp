@@ -92,14 +92,19 @@ TEST_P(EveryScope, ItsCovariancesGoRoundWithIt) {
   // Of one direction only, so that what comes out tells the one that it became.
   scope.hand_eye_covariance = twist * twist.transpose();
   scope.lens_covariance = step * step.transpose();
+  const Eigen::Vector3d window_off(0.02, -0.05, 0.3);
+  scope.window_covariance = window_off * window_off.transpose();
   ScopeModel wrong = scope;
   wrong.X_SC = moved(scope.X_SC, twist);
+  wrong.X_CE.translation_mm += window_off;
   wrong.lens = stepped(scope.lens, step);
   const ScopeModel at = turned(scope, turn), wrong_at = turned(wrong, turn);
   const Pose<C, C> off = at.X_SC.inverse() * wrong_at.X_SC;
   const Eigen::AngleAxisd off_turn(off.rotation);
   Twist became;
   became << off.translation_mm, off_turn.angle() * off_turn.axis();
+  const Eigen::Vector3d window_became = wrong_at.X_CE.translation_mm - at.X_CE.translation_mm;
+  EXPECT_TRUE(at.window_covariance->isApprox(window_became * window_became.transpose(), 1e-9));
   EXPECT_TRUE(at.hand_eye_covariance->isApprox(became * became.transpose(), 1e-5));
   LensStep lens_became = LensStep::Zero();
   lens_became[2] = wrong_at.lens.cx_px - at.lens.cx_px, lens_became[3] = wrong_at.lens.cy_px - at.lens.cy_px;

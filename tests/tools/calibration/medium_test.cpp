@@ -43,9 +43,11 @@ TEST(Medium, TheHandEyesCovarianceMovesWithTheOpticalCentreAndTheLensesIsForgott
   air.lens_covariance = LensCovariance::Identity();
   air.hand_eye_covariance = TwistCovariance::Zero();
   (*air.hand_eye_covariance)(4, 4) = 1e-4;  // a turn about y alone
+  air.window_covariance = Eigen::Vector3d(0, 0, 0.04).asDiagonal();
   const auto fluid = to_fluid(air, Medium::water, {});
   ASSERT_TRUE(fluid) << fluid.error().message;
   EXPECT_FALSE(fluid->scope.lens_covariance);
+  EXPECT_NEAR((*fluid->scope.window_covariance)(2, 2), 1.333 * 1.333 * 0.04, 1e-12);
   const TwistCovariance& moved = *fluid->scope.hand_eye_covariance;
   EXPECT_NEAR(std::sqrt(moved(0, 0)), 0.01 * fluid->viewpoint_mm, 1e-12);  // swings C, which lies back
   EXPECT_NEAR(moved(4, 4), 1e-4, 1e-16);

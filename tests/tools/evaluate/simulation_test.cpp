@@ -36,9 +36,8 @@ TEST(Simulation, AnotherSeedDrawsOtherSetUps) {
   EXPECT_NE(a->mapping_errors_mm, b->mapping_errors_mm);
 }
 
-TEST(Simulation, WithoutAnyErrorNothingIsWrong) {
-  const BallScene ball;
-  SimulationRequest exact = small(40);
+SimulationRequest exactly(int setups) {
+  SimulationRequest exact = small(setups);
   exact.model = {.marker_rms_mm = 0,
                  .fiducial_rms_mm = 0,
                  .hand_eye_mm = 0,
@@ -50,11 +49,26 @@ TEST(Simulation, WithoutAnyErrorNothingIsWrong) {
                  .time_s = 0,
                  .picture_px = 0,
                  .texel_mm = 0};
-  const auto result = simulate(ball.scene(), exact);
+  return exact;
+}
+
+TEST(Simulation, WithoutAnyErrorNothingIsWrong) {
+  const BallScene ball;
+  const auto result = simulate(ball.scene(), exactly(40));
   ASSERT_TRUE(result);
   EXPECT_LT(result->mapping.max, 1e-3);
   EXPECT_LT(result->tip.max, 1e-9);
   EXPECT_LT(result->tracking.max, 1e-9);
+}
+
+TEST(Simulation, WhatThePassportLeavesOpenOfTheWindowIsAnErrorOfTheTipAlone) {
+  const BallScene ball;
+  SimulationRequest request = exactly(400);
+  request.model.window_root = Eigen::Vector3d(0, 0, 0.3).asDiagonal();
+  const auto result = simulate(ball.scene(), request);
+  ASSERT_TRUE(result);
+  EXPECT_NEAR(result->tip_3d.mean, 0.3 * std::sqrt(2 / std::numbers::pi), 0.03);  // of a Gaussian's size
+  EXPECT_LT(result->mapping.max, 1e-3);
 }
 
 TEST(Simulation, TrackingIsTheRepeatabilityOfAPosition) {
