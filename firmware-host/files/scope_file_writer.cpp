@@ -109,7 +109,7 @@ std::string square(std::string_view key, const Eigen::MatrixXd& matrix) {
 }
 
 std::string covariance_text(const ScopeModel& scope) {
-  if (!scope.lens_covariance && !scope.hand_eye_covariance) return {};
+  if (!scope.lens_covariance && !scope.hand_eye_covariance && !scope.window_covariance) return {};
   std::string out = "\n[covariance]\n";
   if (scope.lens_covariance) {
     const std::vector<int> rows = lens_rows(scope.lens.model, *scope.lens_covariance);

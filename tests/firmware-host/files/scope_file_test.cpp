@@ -202,6 +202,19 @@ TEST(ScopeFile, KeepsFewerRowsWhereFewerCoefficientsWereFree) {
   EXPECT_EQ(*back->lens_covariance, *scope.lens_covariance);
 }
 
+TEST(ScopeFile, KeepsTheWindowsCovarianceAloneAndRefusesOneOfAnotherSize) {
+  const TemporaryFolder folder;
+  ScopeModel scope = *read_text(kPassport);
+  scope.window_covariance = Eigen::Vector3d(0, 0, 0.04).asDiagonal();
+  ASSERT_TRUE(write_scope(folder / "scope.toml", scope));
+  const auto back = read_scope(folder / "scope.toml");
+  ASSERT_TRUE(back) << back.error().message;
+  ASSERT_TRUE(back->window_covariance);
+  EXPECT_EQ(*back->window_covariance, *scope.window_covariance);
+  EXPECT_NE(error_with("[poses]", "[covariance]\nwindow = [0.04]\n[poses]").find("3x3, row by row"),
+            std::string::npos);
+}
+
 /// Six by six: 1e-2 on the diagonal but for one pair of numbers.
 std::string six_by_six(const char* upper, const char* lower) {
   std::string text;
