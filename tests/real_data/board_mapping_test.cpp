@@ -90,6 +90,57 @@ TEST(RecordedMapping, CornersOfSevenTrackedViewsLieWhereTheOthersSay) {
     EXPECT_TRUE(std::filesystem::exists(once->folder / "page" / file)) << file;
 }
 
+TEST(RecordedTip, OfSevenTrackedViewsIsWhereTheOthersSay) {
+  const Made* once = made();
+  if (once == nullptr) GTEST_SKIP() << testing::kNoData;
+  ASSERT_TRUE(once->report) << once->report.error().message;
+  const BoardMappingReport& r = *once->report;
+  record("tip", r.tip);
+  record("tip_3d", r.tip_3d);
+  record("tip_along", r.tip_along);
+  EXPECT_FALSE(r.tip_is_window);
+  EXPECT_EQ(r.tip_3d.count, 7U);
+  EXPECT_GE(r.tip.count, 1280U);
+  EXPECT_LT(r.tip_picture_mm, 0.2) << "the picture must know its own tip far better than the tracker does";
+  EXPECT_LT(r.tip.mean, r.tip_3d.mean) << "a distance holds one of three directions";
+  EXPECT_LE(r.tip.mean, 1.0);
+  EXPECT_LE(r.tip.max, 2.5);
+  EXPECT_EQ(r.tracking.from, TrackingFrom::implied);
+  EXPECT_NEAR(r.tracking.marker_mm, 1.23 * 0.25, 0.02);
+  EXPECT_NE(text_of(r).find("implied, not measured"), std::string::npos);
+}
+
+TEST(RecordedTracking, OfAPolarisAtRestBeatsThePapers) {
+  const auto set = testing::data_folder("ndi_polaris_dev");
+  if (!set) GTEST_SKIP() << testing::kNoData;
+  const auto error = tracking_error({*set / "polaris_stream_08_31_2005.bin"}, {});
+  ASSERT_TRUE(error) << error.error().message;
+  record("tracking", error->error);
+  EXPECT_EQ(error->from, TrackingFrom::rests);
+  EXPECT_EQ(error->still.stretches.size(), 1U);
+  EXPECT_GE(error->error.count, 80U);
+  EXPECT_NEAR(error->error.mean, 0.105, 0.01);
+  EXPECT_LT(error->error.max, 0.3);  // the paper: 0.2 +/- 0.1, max 0.3
+}
+
+TEST(RecordedTracking, LeavesOutToolsInAHand) {
+  const auto polaris = testing::data_folder("ndi_polaris_dev"),
+             pivot = testing::data_folder("pivot_ucl_polaris");
+  if (!polaris || !pivot) GTEST_SKIP() << testing::kNoData;
+  EXPECT_FALSE(tracking_error({*polaris / "polaris_stream_03_31_2005_1.txt"}, {}));
+  EXPECT_FALSE(tracking_error({*pivot / "all_1151_time_ns_then_4x4_rowmajor.txt"}, {}));
+}
+
+TEST(RecordedTracking, OfElectromagneticToolsThatRested) {
+  const auto set = testing::data_folder("reg_plus_landmarks");
+  if (!set) GTEST_SKIP() << testing::kNoData;
+  const auto error = tracking_error({*set / "EightLandmarkPointsTrackedForPhantomRegistration.igs.mha"}, {});
+  ASSERT_TRUE(error) << error.error().message;
+  record("tracking", error->error);
+  EXPECT_GT(error->still.moving, error->still.stretches.size()) << "most of it is a hand's";
+  EXPECT_LT(error->error.mean, 0.3);
+}
+
 /// The painted plane as a viewer of NAME.obj sees it, 20 pixels a millimetre from `low_mm`.
 cv::Mat seen_by_a_viewer(const std::filesystem::path& obj, const PlaneExtent& extent) {
   const Picture texture = read_picture(std::filesystem::path(obj).replace_extension(".png")).value();

@@ -62,7 +62,7 @@ TEST(RealRegistration, EightLandmarksAreFoundInARecordingOfAStylus) {
   const auto sequence = read_sequence(*folder / "EightLandmarkPointsTrackedForPhantomRegistration.igs.mha");
   ASSERT_TRUE(sequence) << sequence.error().message;
   EXPECT_EQ(sequence->frames.size(), 1000U);
-  const auto rests = stylus_rests(*sequence, {.tip_mm = {108.565, 7.77385, 2.5389}});
+  const auto rests = stylus_rests(*sequence, {108.565, 7.77385, 2.5389});
   ASSERT_TRUE(rests);
   EXPECT_EQ(rests->size(), 10U);
   const std::vector<Eigen::Vector3d> landmarks{{104.3, 5, 20}, {104.3, 45, 20}, {104.3, 45, 0},

@@ -52,8 +52,9 @@ Result<HandEyeFit> refine_hand_eye(const std::vector<HandEyeView>& views, const 
 struct HandEyeSpread {
   TwistCovariance hand_eye;            ///< of X_SC: a twist in C (mm, rad)
   std::optional<LensCovariance> lens;  ///< where it was refined, in Lens's units
-  double misfit = 0;  ///< sum of the markers' whitened squares over their degrees of freedom: 1 where the
-                      ///< noise is as declared. hand_eye is multiplied by it
+  double misfit = 0;   ///< sum of the markers' whitened squares over their degrees of freedom: 1 where the
+                       ///< noise is as declared. hand_eye is multiplied by it
+  double freedom = 0;  ///< those degrees
 };
 
 /// First order at the fit, scaled by the markers' misfit and, since that is itself known from few views only,

@@ -83,7 +83,7 @@ std::optional<HandEyeSpread> hand_eye_spread(const std::vector<HandEyeView>& vie
   const Eigen::MatrixXd markers = at->jacobian.topRows(rows);
   const double freedom = static_cast<double>(rows) - (markers * *covariance).cwiseProduct(markers).sum();
   if (freedom < 3) return std::nullopt;
-  HandEyeSpread spread{.misfit = at->residuals.head(rows).squaredNorm() / freedom};
+  HandEyeSpread spread{.misfit = at->residuals.head(rows).squaredNorm() / freedom, .freedom = freedom};
   const Eigen::Matrix<double, 6, 6> twist = twist_by_numbers(joint.hand_eye);
   spread.hand_eye =
       spread.misfit * freedom / (freedom - 2) * twist * covariance->topLeftCorner<6, 6>() * twist.transpose();

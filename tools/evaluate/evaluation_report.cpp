@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "firmware-host/files/whole_file.hpp"
+#include "tools/evaluate/paper_rows.hpp"
 #include "tools/evaluate/stated_errors.hpp"
 
 namespace orcart {
@@ -27,16 +28,6 @@ std::string quoted(const std::string& s) {
   return out + "\"";
 }
 
-/// A row of the paper's Table 1 (Dey et al. 2000): mean, s.d., max.
-struct PaperRow {
-  const char* name;
-  double mean, sd, max;
-  const char* protocol;
-};
-constexpr PaperRow kPaper[3]{{"tracking", 0.2, 0.1, 0.3, "same pose, 5 trials"},
-                             {"tip", 0.8, 0.3, 1.0, "known distances, 5 trials"},
-                             {"mapping", 1.2, 0.6, 1.8, "4 landmarks"}};
-
 const Statistics& row_of(const SimulationResult& result, int row) {
   return row == 0 ? result.tracking : row == 1 ? result.tip : result.mapping;
 }
@@ -45,18 +36,12 @@ std::string table_text(const NoiseRun& run) {
   std::string out =
       text("\n%s: %.2f mm RMS a marker, %d set-ups of chance (%.1f s)\n", run.name.c_str(),
            run.model.marker_rms_mm, static_cast<int>(run.result.tracking.count / 5), run.result.seconds);
-  out +=
-      "error, mm        mean   s.d.    p95    max       n   mean's 95 %        the paper: mean  s.d.  max\n";
+  out += paper_header_text();
   for (int row = 0; row < 3; ++row) {
-    const Statistics& s = row_of(run.result, row);
-    out +=
-        text("%-15s %5.3f  %5.3f  %5.3f  %5.2f  %6zu   %.3f to %.3f               %.1f   %.1f  %.1f  (%s)\n",
-             kPaper[row].name, s.mean, s.sd, s.p95, s.max, s.count, s.mean_low, s.mean_high, kPaper[row].mean,
-             kPaper[row].sd, kPaper[row].max, kPaper[row].protocol);
+    const PaperRow& paper = kPaperRows[static_cast<std::size_t>(row)];
+    out += paper_row_text(paper.name, row_of(run.result, row), &paper);
   }
-  const Statistics& tip = run.result.tip_3d;
-  out += text("%-15s %5.3f  %5.3f  %5.3f  %5.2f  %6zu   %.3f to %.3f\n", "tip in 3-D", tip.mean, tip.sd,
-              tip.p95, tip.max, tip.count, tip.mean_low, tip.mean_high);
+  out += paper_row_text("tip in 3-D", run.result.tip_3d, nullptr);
   out += "budget of the mapping error, each part alone\n";
   for (std::size_t c = 0; c < kComponents; ++c) {
     const Statistics& s = run.result.alone[c];
@@ -69,13 +54,6 @@ std::string table_text(const NoiseRun& run) {
       run.result.predicted_rms.mean, 100 * run.result.coverage.share(), run.result.coverage.points,
       100 * run.result.coverage_all.share(), run.result.jumped, run.result.lost);
   return out;
-}
-
-std::string json_of(const Statistics& s) {
-  return text(
-      "{\"mean_mm\": %.4f, \"sd_mm\": %.4f, \"p95_mm\": %.4f, \"max_mm\": %.4f, \"n\": %zu, "
-      "\"mean_ci95_mm\": [%.4f, %.4f]}",
-      s.mean, s.sd, s.p95, s.max, s.count, s.mean_low, s.mean_high);
 }
 
 std::string json_of(const ErrorModel& m) {
@@ -161,22 +139,12 @@ std::string histogram_svg(const NoiseRun& run) {
 }
 
 std::string table_html(const NoiseRun& run) {
-  std::string out =
-      "<table><tr><th>error, mm</th><th>mean</th><th>s.d.</th><th>p95</th><th>max</th><th>n</th>"
-      "<th>95 % of the mean</th><th>the paper: mean, s.d., max</th></tr>\n";
+  std::string out = "<table>" + paper_header_html();
   for (int row = 0; row < 3; ++row) {
-    const Statistics& s = row_of(run.result, row);
-    out += text(
-        "<tr><td>%s</td><td>%.3f</td><td>%.3f</td><td>%.3f</td><td>%.2f</td><td>%zu</td><td>%.3f to "
-        "%.3f</td><td>%.1f, %.1f, %.1f (%s)</td></tr>\n",
-        kPaper[row].name, s.mean, s.sd, s.p95, s.max, s.count, s.mean_low, s.mean_high, kPaper[row].mean,
-        kPaper[row].sd, kPaper[row].max, kPaper[row].protocol);
+    const PaperRow& paper = kPaperRows[static_cast<std::size_t>(row)];
+    out += paper_row_html(paper.name, row_of(run.result, row), &paper);
   }
-  const Statistics& tip = run.result.tip_3d;
-  return out + text(
-                   "<tr><td>tip in 3-D</td><td>%.3f</td><td>%.3f</td><td>%.3f</td><td>%.2f</td><td>%zu</td>"
-                   "<td>%.3f to %.3f</td><td></td></tr></table>\n",
-                   tip.mean, tip.sd, tip.p95, tip.max, tip.count, tip.mean_low, tip.mean_high);
+  return out + paper_row_html("tip in 3-D", run.result.tip_3d, nullptr) + "</table>\n";
 }
 
 std::string run_html(const NoiseRun& run) {

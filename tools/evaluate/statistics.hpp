@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "tools/registration/students_t.hpp"
+
 namespace orcart {
 
 struct Statistics {
@@ -15,7 +17,7 @@ struct Statistics {
 };
 
 /// Of values that come in groups (the landmarks of one set-up share its errors): the confidence of the mean
-/// is taken from the means of the groups.
+/// is taken from the means of the groups, by Student's t for as many.
 inline Statistics statistics_of(std::vector<double> values, const std::vector<double>& group_means) {
   Statistics s{.count = values.size()};
   if (values.empty()) return s;
@@ -29,7 +31,8 @@ inline Statistics statistics_of(std::vector<double> values, const std::vector<do
   const auto groups = static_cast<double>(group_means.size());
   for (const double g : group_means) centre += g / groups;
   for (const double g : group_means) spread += (g - centre) * (g - centre);
-  const double half = groups > 1 ? 1.96 * std::sqrt(spread / (groups - 1) / groups) : 0;
+  const double half =
+      groups > 1 ? students_t(group_means.size() - 1) * std::sqrt(spread / (groups - 1) / groups) : 0;
   s.mean_low = s.mean - half;
   s.mean_high = s.mean + half;
   return s;

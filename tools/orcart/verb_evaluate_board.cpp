@@ -1,4 +1,4 @@
-// orcart evaluate board: the mapping error on recorded, tracked pictures of a calibration board.
+// orcart evaluate board: the paper's Table 1 on recorded, tracked pictures of a calibration board.
 #include <unistd.h>
 
 #include <cstdio>
@@ -12,16 +12,23 @@ namespace orcart {
 namespace {
 
 constexpr const char* kExample =
-    "Each picture is painted onto the board's plane by what the other pictures alone say about hand-eye and "
-    "board, its\n"
-    "corners are found again in the painting, and their distance from where they are printed is told: per "
-    "view, over all,\n"
-    "and beside the paper's 1.2 +/- 0.6 mm. Also the step of grey across the joins, with and without "
-    "--light of `orcart\n"
-    "paint`. With --page the folder also holds the files by which `orcart paint` paints each view again.\n\n"
+    "The paper's three errors beside the paper's, each view judged by what the other views alone say about "
+    "hand-eye and\n"
+    "board. Tracking: readings of a tool at rest about their mean, from the recordings that --still names "
+    "(NDI "
+    "dialogues,\n"
+    "PLUS sequences .mha, poses); without them what the views imply, and said so. Tip: its distance to the "
+    "board's\n"
+    "corners, by tracker and hand-eye against by the picture. Mapping: each picture is painted onto the "
+    "board's "
+    "plane and\n"
+    "its corners are found again in the painting. Also the step of grey across the joins, with and without "
+    "--light of\n"
+    "`orcart paint`. With --page the folder also holds the files by which `orcart paint` paints each view "
+    "again.\n\n"
     "Example:\n"
-    "  orcart evaluate board image*.png --poses poses.csv --pattern chessboard:18x16:2mm --page "
-    "out/mapping\n";
+    "  orcart evaluate board image*.png --poses poses.csv --pattern chessboard:18x16:2mm --still at-rest.mha "
+    "--page out/mapping\n";
 
 struct Arguments {
   BoardMappingCommand command;
@@ -52,7 +59,7 @@ int run(Arguments& arguments) {
 
 void add_evaluate_board(CLI::App& evaluate, int& exit_code) {
   CLI::App* verb =
-      evaluate.add_subcommand("board", "The mapping error on recorded pictures of a calibration board");
+      evaluate.add_subcommand("board", "The paper's Table 1 on recorded pictures of a calibration board");
   verb->footer(kExample);
   const auto arguments = std::make_shared<Arguments>();
   BoardMappingCommand& command = arguments->command;
@@ -61,6 +68,10 @@ void add_evaluate_board(CLI::App& evaluate, int& exit_code) {
                    "the marker's poses: a file or a folder, by the pictures' names or in their order")
       ->required();
   verb->add_option("--pattern", arguments->pattern, "as for `orcart calibrate camera`")->required();
+  verb->add_option(
+      "--still", command.still,
+      "recordings of tracked tools at rest, for the tracking error: NDI dialogues, PLUS sequences "
+      "(.mha), or poses");
   verb->add_option("--scope", command.scope,
                    "the passport; the camera is calibrated from the pictures unless told");
   verb->add_option("--mode", command.mode, "perspective (default), or paper")

@@ -45,8 +45,7 @@ Result<std::vector<NamedPoint>> moving_points(const Arguments& arguments) {
     return fail(arguments.moving + ": a recording needs the stylus tip in its marker, --stylus-tip x,y,z");
   const auto sequence = read_sequence(arguments.moving);
   if (!sequence) return tl::unexpected(sequence.error());
-  return stylus_rests(
-      *sequence, {.tip_mm = {arguments.stylus_tip[0], arguments.stylus_tip[1], arguments.stylus_tip[2]}});
+  return stylus_rests(*sequence, {arguments.stylus_tip[0], arguments.stylus_tip[1], arguments.stylus_tip[2]});
 }
 
 /// What the surface adds: refinement by points on it, and the predicted error over all of it.

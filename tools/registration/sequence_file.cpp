@@ -82,33 +82,20 @@ Result<SequenceFile> read_sequence(const std::filesystem::path& file) {
   return sequence;
 }
 
-Result<std::vector<NamedPoint>> stylus_rests(const SequenceFile& sequence, const RestSearch& search) {
+Result<std::vector<NamedPoint>> stylus_rests(const SequenceFile& sequence, const Eigen::Vector3d& tip_mm,
+                                             const RestSearch& search) {
   std::vector<Eigen::Vector3d> tips;
   for (const SequenceFrame& frame : sequence.frames) {
     const auto reference = frame.transforms.find("ReferenceToTracker"),
                stylus = frame.transforms.find("StylusToTracker");
     if (reference == frame.transforms.end() || stylus == frame.transforms.end()) continue;
-    tips.push_back((reference->second.inverse() * stylus->second * Point<W>{search.tip_mm}).mm);
+    tips.push_back((reference->second.inverse() * stylus->second * Point<W>{tip_mm}).mm);
   }
   if (tips.size() < search.frames)
     return fail("the sequence has too few frames with ReferenceToTracker and StylusToTracker");
   std::vector<NamedPoint> rests;
-  for (std::size_t start = 0; start + search.frames <= tips.size();) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    std::size_t end = start;
-    for (; end < tips.size(); ++end) {
-      const auto count = static_cast<double>(end - start);
-      if (end > start && (tips[end] - sum / count).norm() > search.within_mm) break;
-      sum += tips[end];
-    }
-    const std::size_t length = end - start;
-    if (length < search.frames) {
-      ++start;
-      continue;
-    }
-    rests.push_back({.name = std::to_string(rests.size() + 1), .mm = sum / static_cast<double>(length)});
-    start = end;
-  }
+  for (const Rest& rest : rests_of(tips, search))
+    rests.push_back({.name = std::to_string(rests.size() + 1), .mm = rest.mean_mm});
   return rests;
 }
 

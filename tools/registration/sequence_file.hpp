@@ -9,6 +9,7 @@
 #include "realtime/base/result.hpp"
 #include "realtime/geometry/pose.hpp"
 #include "tools/registration/points_file.hpp"
+#include "tools/registration/rests.hpp"
 
 namespace orcart {
 
@@ -28,14 +29,9 @@ struct SequenceFile {
 /// Reads the header; the pictures behind it are left alone.
 Result<SequenceFile> read_sequence(const std::filesystem::path& file);
 
-struct RestSearch {
-  Eigen::Vector3d tip_mm = Eigen::Vector3d::Zero();  ///< of the stylus, in its marker
-  std::size_t frames = 20;                           ///< a rest lasts at least so many
-  double within_mm = 2;                              ///< of their mean
-};
-
-/// The stylus tip in the reference, averaged over each rest, named "1", "2", ... Refuses a file without both
-/// tools.
-Result<std::vector<NamedPoint>> stylus_rests(const SequenceFile& sequence, const RestSearch& search);
+/// The stylus tip in the reference, averaged over each rest, named "1", "2", ...; `tip_mm` in the stylus's
+/// marker. Refuses a file without both tools.
+Result<std::vector<NamedPoint>> stylus_rests(const SequenceFile& sequence, const Eigen::Vector3d& tip_mm,
+                                             const RestSearch& search = {});
 
 }  // namespace orcart

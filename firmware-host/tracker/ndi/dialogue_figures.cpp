@@ -4,7 +4,6 @@
 #include "firmware-host/tracker/ndi/command.hpp"
 #include "firmware-host/tracker/ndi/framing.hpp"
 #include "firmware-host/tracker/ndi/hex.hpp"
-#include "firmware-host/tracker/ndi/tracking_reply.hpp"
 #include "firmware-host/tracker/ndi/words.hpp"
 #include "realtime/base/crc16.hpp"
 
@@ -160,7 +159,10 @@ class Counter {
   void take_tracking(const DialogueRecord& record, const Result<TrackingReply, ReplyFault>& reply) {
     if (!reply) return remark(record, "the reply's CRC is good, but it cannot be read");
     for (const HandleReading& reading : reply->readings()) {
-      if (reading.has_transform) ++figures_.transforms;
+      if (reading.has_transform) {
+        ++figures_.transforms;
+        figures_.placed.push_back(reading);
+      }
       if (reading.status == HandleStatus::missing) ++figures_.missing;
       if (reading.status == HandleStatus::disabled) ++figures_.disabled;
     }

@@ -122,7 +122,7 @@ TEST(Statistics, OfOneToTen) {
   EXPECT_DOUBLE_EQ(s.mean, 5.5);
   EXPECT_NEAR(s.sd, 3.02765, 1e-5);
   EXPECT_EQ(s.max, 10);
-  EXPECT_NEAR(s.mean_high - s.mean, 1.96 * 3.02765 / std::sqrt(10.0), 1e-4);
+  EXPECT_NEAR(s.mean_high - s.mean, 2.262 * 3.02765 / std::sqrt(10.0), 1e-4);
 }
 
 }  // namespace

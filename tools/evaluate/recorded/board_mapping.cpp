@@ -63,19 +63,35 @@ std::vector<double> distances(const ViewMapping& view, Eigen::Vector2d PaintedCo
 /// Over all views, which are the groups.
 void add_totals(BoardMappingReport& report) {
   GroupedValues error, painting;
-  std::vector<double> origins;
-  double sum2 = 0, corners = 0;
+  GroupedValues tip;
+  std::vector<double> origins, apart, along;
+  double sum2 = 0, corners = 0, picture2 = 0;
   for (const ViewMapping& view : report.views) {
     error.add(distances(view, &PaintedCorner::found_mm, &PaintedCorner::grid_mm));
     painting.add(distances(view, &PaintedCorner::found_mm, &PaintedCorner::ray_mm));
+    tip.add(view.tip.distances_mm);
     origins.push_back(view.origin_mm);
+    apart.push_back(view.tip.apart_mm);
+    along.push_back(std::abs(view.tip.along_mm));
+    picture2 += view.tip.picture_mm * view.tip.picture_mm / static_cast<double>(report.views.size());
     sum2 += view.lens_rms_mm * view.lens_rms_mm * static_cast<double>(view.seen);
     corners += static_cast<double>(view.seen);
   }
   report.all = error.statistics();
   report.painting = painting.statistics();
   report.origin = statistics_of(origins, origins);
+  report.tip = tip.statistics();
+  report.tip_3d = statistics_of(apart, apart);
+  report.tip_along = statistics_of(along, along);
+  report.tip_picture_mm = std::sqrt(picture2);
   report.lens_rms_mm = corners > 0 ? std::sqrt(sum2 / corners) : 0;
+}
+
+Result<TipErrors> tip_of(const LeftOut& one) {
+  const Pose<B, C> believed{.rotation = one.posed.X_MC.rotation,
+                            .translation_mm = one.posed.X_MC.translation_mm};
+  return tip_errors({.believed = believed, .seen = one.X_CB, .X_CE = one.scope.X_CE}, one.view,
+                    one.scope.lens, one.corner_sigma_px);
 }
 
 class BoardEvaluator {
@@ -128,6 +144,10 @@ class BoardEvaluator {
                   "painted by what the others say");
     report_.notes.insert(report_.notes.end(), hand_eye->notes.begin(), hand_eye->notes.end());
     report_.tracker_floor_mm = hand_eye->floor_mm;
+    auto tracking = tracking_error(command_.still, *hand_eye);
+    if (!tracking) return tl::unexpected(tracking.error());
+    report_.tracking = *std::move(tracking);
+    report_.tip_is_window = !passport->X_CE.translation_mm.isZero(0);
     progress_("leaving each view out", 0);
     auto left_out = leave_each_out(*hand_eye, passport->lens);
     if (!left_out) return tl::unexpected(left_out.error());
@@ -160,8 +180,10 @@ class BoardEvaluator {
       ViewMapping view = corners_in_painting(one.view, command_.hand_eye.pattern, one.scope.lens,
                                              one.posed.X_MC, *std::move(flat));
       if (view.corners.empty()) report_.notes.push_back(view.image + ": no corner is found in its painting");
-      if (const auto X_CB = board_pose(one.view, one.scope.lens); X_CB)
-        view.lens_rms_mm = rms_on_board_mm(one.scope.lens, *X_CB, one.view.corners);
+      auto tip = tip_of(one);
+      if (!tip) return fail(one.view.image.string() + ": " + tip.error().message);
+      view.tip = *std::move(tip);
+      view.lens_rms_mm = rms_on_board_mm(one.scope.lens, one.X_CB, one.view.corners);
       view.origin_mm = one.origin_mm;
       report_.views.push_back(std::move(view));
     }
@@ -237,6 +259,8 @@ Result<std::vector<LeftOut>> leave_each_out(const HandEyeCalibration& calibratio
     const Pose<B, C> X_BC = fit->X_TB.inverse() * view.X_TS * fit->X_SC;
     one.posed = {.picture = *std::move(picture),
                  .X_MC = {.rotation = X_BC.rotation, .translation_mm = X_BC.translation_mm}};
+    one.X_CB = *X_CB;
+    one.corner_sigma_px = fit->corner_sigma_px;
     one.origin_mm = ((view.X_TS * fit->X_SC * *X_CB).translation_mm - fit->X_TB.translation_mm).norm();
     left_out.push_back(std::move(one));
   }

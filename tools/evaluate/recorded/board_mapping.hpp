@@ -1,5 +1,5 @@
-// The mapping error on recorded data: tracked pictures of a board, each painted onto the board's plane by
-// what the others say.
+// The paper's Table 1 on recorded data: tracked pictures of a board, each judged, and painted onto the
+// board's plane, by what the others say.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "tools/calibration/hand_eye_command.hpp"
+#include "tools/evaluate/recorded/board_tip.hpp"
 #include "tools/evaluate/recorded/flat_painting.hpp"
 #include "tools/evaluate/recorded/light_steps.hpp"
+#include "tools/evaluate/recorded/tracking_error.hpp"
 #include "tools/evaluate/statistics.hpp"
 #include "tools/mesh/surface_report.hpp"
 
@@ -31,7 +33,8 @@ struct ViewMapping {
   Statistics painting;     ///< from found_mm to ray_mm: what painting adds
   double lens_rms_mm = 0;  ///< of the corners through the view's own best pose: no tracker, no hand-eye in it
   double origin_mm = 0;    ///< 3-D, of the board's origin: what `orcart calibrate handeye` tells
-  FlatPainting flat;       ///< only this view
+  TipErrors tip;
+  FlatPainting flat;  ///< only this view
 };
 
 /// The corners of `view` that are found again in its painting: by the names that dots or markers give them
@@ -45,6 +48,8 @@ struct LeftOut {
   ScopeModel scope;  ///< lens and X_SC of the others
   PosedPicture posed;
   BoardView view;
+  Pose<C, B> X_CB;             ///< its own best pose, through the others' lens: no tracker, no hand-eye in it
+  double corner_sigma_px = 0;  ///< of a corner, as the others' fit weighed it
   double origin_mm = 0;
 };
 
@@ -60,15 +65,22 @@ struct BoardMappingCommand {
   std::filesystem::path scope;  ///< empty: the camera is calibrated from these pictures
   TextureMode mode = TextureMode::perspective;
   double texel_mm = 0.05;
+  std::vector<std::filesystem::path> still;  ///< recordings of tools at rest, for the tracking error
   std::filesystem::path page;  ///< a folder for page, pictures, and the files for `orcart paint`; empty: none
 };
 
 struct BoardMappingReport {
   std::string pattern, mode;
   std::vector<ViewMapping> views;
-  Statistics all, painting;  ///< over all corners; the mean's confidence is from the views' means
-  Statistics origin;         ///< of the board's origin, one a view
-  double lens_rms_mm = 0;    ///< over all views
+  TrackingError tracking;
+  Statistics tip;        ///< one-dimensional: distances from the tip to the board's points, over all views
+  Statistics tip_3d;     ///< one a view
+  Statistics tip_along;  ///< one a view: along the optical axis
+  double tip_picture_mm = 0;   ///< what the pictures leave open about their own tips: RMS in 3-D
+  bool tip_is_window = false;  ///< the passport has X_CE; else the tip is the optical centre
+  Statistics all, painting;    ///< over all corners; the mean's confidence is from the views' means
+  Statistics origin;           ///< of the board's origin, one a view
+  double lens_rms_mm = 0;      ///< over all views
   double tracker_floor_mm = 0;
   std::vector<LightStep> light;  ///< across seams of all views painted together
   std::vector<std::string> notes;
