@@ -119,7 +119,7 @@ ChainErrors Cart::State::chain_errors(const NdiSettings& driven) const {
           .reference_markers_mm = ndi::markers_of(driven.tools[1].definition),
           .registration = registration.covariance,
           .registration_mm = registration.predicted_tre_mm,
-          .time_s = setup.config.time_deviation_s,
+          .time_s = setup.config.time_deviation_s.value_or(kAssumedErrors.time_s),
           .texel_mm = setup.patient.layout.texel_mm};
 }
 

@@ -111,9 +111,9 @@ Result<CartConfig> read_cart(const std::filesystem::path& file) {
   const TomlSection sync = reader.section("sync");
   config.tracker_against_video = from_seconds(
       1e-3 * sync.number("tracker_against_video_ms", {.min = -500, .max = 500, .fallback = 0.0}));
-  config.time_deviation_s =
-      1e-3 * sync.number("tracker_against_video_deviation_ms",
-                         {.min = 0, .max = 100, .fallback = 1e3 * kAssumedErrors.time_s});
+  if (sync.has("tracker_against_video_deviation_ms"))
+    config.time_deviation_s =
+        1e-3 * sync.number("tracker_against_video_deviation_ms", {.min = 0, .max = 100});
   read_painting(reader.section("painting"), config);
   const TomlSection view = reader.section("view");
   config.view_from = view.numbers("from", 3, config.view_from);

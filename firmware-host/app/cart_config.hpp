@@ -55,8 +55,8 @@ struct CartConfig {
   EncoderConfig encoder;  ///< turn = encoder
   PanelConfig panel;
   Nanos tracker_against_video{};  ///< [sync]: added to a frame's mid-exposure before poses are looked up
-  double time_deviation_s = kAssumedErrors.time_s;  ///< standard deviation of it
-  std::vector<double> view_from = {0, -1, 0};       ///< from the surface's centre to the eye, M
+  std::optional<double> time_deviation_s;      ///< standard deviation of it; nothing: not told
+  std::vector<double> view_from = {0, -1, 0};  ///< from the surface's centre to the eye, M
   std::vector<double> view_up = {0, 0, 1};
   SimulationConfig simulation;
 

@@ -50,12 +50,15 @@ Result<std::unique_ptr<KeptSession>> KeptSession::create(const Request& request)
   if (!scope) return tl::unexpected(scope.error());
   auto registration = text_of(config.registration);
   if (!registration) return tl::unexpected(registration.error());
+  std::optional<Nanos> deviation;
+  if (config.time_deviation_s) deviation = from_seconds(*config.time_deviation_s);
   auto writer = SessionWriter::create(
       request.file, {.application_version = ORCART_VERSION,
                      .config_hash = hash_of(*cart),
                      .started_utc = utc_now(),
                      .started_at = request.started_at,
                      .tracker_against_video = config.tracker_against_video,
+                     .tracker_against_video_deviation = deviation,
                      .turn_rad = config.turn == TurnSource::told ? config.turn_rad.value_or(0) : 0});
   if (!writer) return tl::unexpected(writer.error());
   const auto picture_bytes =

@@ -45,6 +45,10 @@ StoredCapture capture_of(const Statement& row) {
   }
   capture.undone = row.integer(24) != 0;
   capture.facts.turn_rad = row.number(25);  // 0 where the file's form has none
+  if (row.number_or_null(26)) {
+    capture.facts.velocity.emplace();
+    for (int i = 0; i < 6; ++i) (*capture.facts.velocity)[i] = row.number(26 + i);
+  }
   return capture;
 }
 
@@ -87,6 +91,10 @@ Result<SessionMeta> SessionReader::meta() {
       database_.integer("SELECT value FROM meta WHERE key = 'tracker_against_video_ns'");  // 0 where absent
   if (!shift) return tl::unexpected(shift.error());
   meta.tracker_against_video = Nanos{*shift};
+  const auto deviation = database_.integer(
+      "SELECT COALESCE((SELECT value FROM meta WHERE key = 'tracker_against_video_deviation_ns'), -1)");
+  if (!deviation) return tl::unexpected(deviation.error());
+  if (*deviation >= 0) meta.tracker_against_video_deviation = Nanos{*deviation};
   const auto turn = database_.integer("SELECT value FROM meta WHERE key = 'turn_nrad'");
   if (!turn) return tl::unexpected(turn.error());
   meta.turn_rad = 1e-9 * static_cast<double>(*turn);

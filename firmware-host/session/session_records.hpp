@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "realtime/base/image.hpp"
 #include "realtime/base/instant.hpp"
-#include "realtime/geometry/pose.hpp"
+#include "realtime/geometry/twist.hpp"
 #include "realtime/sync/captured_frame.hpp"
 #include "realtime/sync/pose_sample.hpp"
 
@@ -23,6 +24,8 @@ struct SessionMeta {
   /// [sync] of the run: already added to mid-exposure where a capture's pose was looked up. Files from before
   /// it was kept have none, and read as 0.
   Nanos tracker_against_video{};
+  /// Its standard deviation, where cart.toml told one.
+  std::optional<Nanos> tracker_against_video_deviation;
   double turn_rad = 0;  ///< of the light post, as told before the run. To 1e-9; absent reads as 0
 };
 
@@ -44,6 +47,9 @@ struct CaptureFacts {
   double turn_rad = 0;  ///< of the light post since the run's told turn; already in X_MC
   PoseKind pose_kind = PoseKind::none;
   Nanos pose_distance{};  ///< from mid-exposure to the nearest sample
+  /// Of the camera by its marker's movement in the reference, about mid-exposure: mm/s, rad/s, in C. Nothing
+  /// where the tracker's samples did not tell it, and in files from before it was kept.
+  std::optional<Twist> velocity;
 };
 
 /// A capture as it is read again, without its picture.

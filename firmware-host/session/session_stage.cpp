@@ -23,7 +23,8 @@ void SessionStage::keep(const CapturedFrame& frame, const CaptureRecord& record)
                              .X_MC = record.X_MC,
                              .turn_rad = record.turn_rad,
                              .pose_kind = record.pose_kind,
-                             .pose_distance = record.pose_distance});
+                             .pose_distance = record.pose_distance,
+                             .velocity = record.velocity});
 }
 
 }  // namespace orcart

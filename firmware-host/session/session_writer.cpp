@@ -48,8 +48,10 @@ Result<void> write_meta(Database& database, const SessionMeta& meta) {
     if (const auto done = statement->with(key, value).step(); !done) return tl::unexpected(done.error());
   if (const auto done = statement->with(std::string_view("started_ns"), meta.started_at).step(); !done)
     return tl::unexpected(done.error());
-  const std::array<std::pair<std::string_view, std::int64_t>, 2> numbers{{
+  constexpr Nanos kNotTold{-1};
+  const std::array<std::pair<std::string_view, std::int64_t>, 3> numbers{{
       {"tracker_against_video_ns", meta.tracker_against_video.count()},
+      {"tracker_against_video_deviation_ns", meta.tracker_against_video_deviation.value_or(kNotTold).count()},
       {"turn_nrad", std::llround(1e9 * meta.turn_rad)},
   }};
   for (const auto& [key, value] : numbers)
@@ -97,7 +99,7 @@ Result<SessionWriter::Statements> SessionWriter::prepare(Database& database) {
   auto capture = database.prepare(
       "INSERT INTO captures VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, "
       "?17, ?18, "
-      "?19, ?20, ?21, ?22, ?23, ?24, 0, ?25)");
+      "?19, ?20, ?21, ?22, ?23, ?24, 0, ?25, ?26, ?27, ?28, ?29, ?30, ?31)");
   if (!capture) return tl::unexpected(capture.error());
   auto picture = database.prepare("INSERT INTO pictures VALUES(?1, ?2, ?3, ?4, ?5, ?6)");
   if (!picture) return tl::unexpected(picture.error());
@@ -164,14 +166,15 @@ Result<void> SessionWriter::write_capture(const CaptureSlot& slot) {
   const CaptureFacts& f = slot.facts;
   const Eigen::Matrix3d& r = f.X_MC.rotation;
   const Eigen::Vector3d& t = f.X_MC.translation_mm;
+  const auto v = [&f](int i) { return f.velocity ? std::optional((*f.velocity)[i]) : std::nullopt; };
   const std::int64_t id = captures_ + 1;
-  const auto row =
-      statements_.capture
-          .with(id, f.unit, f.streaming ? 1 : 0, slot.frame.sequence, f.edge_at, slot.frame.exposure_start,
-                slot.frame.exposure_end, slot.frame.dequeued_at, f.matched_at, f.painted_at,
-                static_cast<int>(f.pose_kind), f.pose_distance, r(0, 0), r(0, 1), r(0, 2), t(0), r(1, 0),
-                r(1, 1), r(1, 2), t(1), r(2, 0), r(2, 1), r(2, 2), t(2), f.turn_rad)
-          .step();
+  const auto row = statements_.capture
+                       .with(id, f.unit, f.streaming ? 1 : 0, slot.frame.sequence, f.edge_at,
+                             slot.frame.exposure_start, slot.frame.exposure_end, slot.frame.dequeued_at,
+                             f.matched_at, f.painted_at, static_cast<int>(f.pose_kind), f.pose_distance,
+                             r(0, 0), r(0, 1), r(0, 2), t(0), r(1, 0), r(1, 1), r(1, 2), t(1), r(2, 0),
+                             r(2, 1), r(2, 2), t(2), f.turn_rad, v(0), v(1), v(2), v(3), v(4), v(5))
+                       .step();
   if (!row) return tl::unexpected(row.error());
   const ImageDescriptor& image = slot.frame.image;
   const auto picture =

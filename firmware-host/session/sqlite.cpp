@@ -64,6 +64,11 @@ double Statement::number(int column) const {
   return sqlite3_column_double(statement_.get(), column);
 }
 
+std::optional<double> Statement::number_or_null(int column) const {
+  if (sqlite3_column_type(statement_.get(), column) == SQLITE_NULL) return std::nullopt;
+  return number(column);
+}
+
 std::string Statement::text(int column) const {
   const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
   const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -34,6 +35,8 @@ class Statement {
 
   std::int64_t integer(int column) const;
   double number(int column) const;
+  /// Nothing where the column is NULL, or the row has no such column.
+  std::optional<double> number_or_null(int column) const;
   std::string text(int column) const;
   Instant instant(int column) const { return instant_from_nanos(integer(column)); }
   /// Valid until the next step().
@@ -51,6 +54,10 @@ class Statement {
   void bind(int index, std::uint32_t value) { bind(index, static_cast<std::int64_t>(value)); }
   void bind(int index, int value) { bind(index, static_cast<std::int64_t>(value)); }
   void bind(int index, double value);
+  /// NULL where there is none: with() has cleared what was bound.
+  void bind(int index, const std::optional<double>& value) {
+    if (value) bind(index, *value);
+  }
   void bind(int index, std::string_view value);
   void bind(int index, std::span<const std::byte> value);
   void bind(int index, Instant value) { bind(index, nanos_since_zero(value)); }

@@ -37,6 +37,7 @@ struct CaptureRecord {
   double turn_rad = 0;  ///< of the light post since the passport's turn
   PoseKind pose_kind = PoseKind::none;
   Nanos pose_distance{};
+  std::optional<Twist> velocity;  ///< of C by the marker's movement, mm/s and rad/s in C; nothing: not known
   bool undone = false;
 };
 

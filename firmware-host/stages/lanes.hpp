@@ -74,6 +74,8 @@ struct Selection {
   MatchedFrame matched;
   CaptureRequest request;
   Instant decided_at{};
+  std::optional<Twist>
+      velocity;  ///< of the scope marker in the reference, a second, in S; nothing: not known
 };
 
 struct LaneDepths {

@@ -32,6 +32,7 @@ StepReport MapperStage::step(Instant) noexcept {
                                 .turn_rad = view_.matched.turn_rad,
                                 .pose_kind = view_.matched.pose.kind,
                                 .pose_distance = view_.matched.pose.distance,
+                                .velocity = velocity_,
                                 .matched_at = view_.decided_at,
                                 .mapped_at = clock_.now()});
   return {.worked = true,
@@ -41,7 +42,10 @@ StepReport MapperStage::step(Instant) noexcept {
 
 bool MapperStage::begin_next() noexcept {
   if (!lanes_.selected.try_pop(view_)) return false;
-  X_MC_ = settings_.X_MR * view_.matched.pose.X_RS * optics_at(settings_.scope, view_.matched.turn_rad).X_SC;
+  const Pose<S, C> X_SC = optics_at(settings_.scope, view_.matched.turn_rad).X_SC;
+  X_MC_ = settings_.X_MR * view_.matched.pose.X_RS * X_SC;
+  velocity_.reset();
+  if (view_.velocity) velocity_ = twist_seen_from(X_SC) * *view_.velocity;
   mapper_.begin(X_MC_, settings_.mode);
   in_view_ = true;
   return true;

@@ -37,6 +37,7 @@ class MapperStage final : public Stage {
   std::vector<std::uint32_t> free_;
   Selection view_;  ///< whose parts are being made
   Pose<M, C> X_MC_;
+  std::optional<Twist> velocity_;
   bool in_view_ = false;
 };
 

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
-#include "realtime/geometry/pose.hpp"
+#include "realtime/geometry/twist.hpp"
 #include "realtime/sync/captured_frame.hpp"
 #include "realtime/sync/pose_sample.hpp"
 #include "realtime/sync/refusal.hpp"
@@ -33,8 +34,10 @@ struct PaintOrder {
   double turn_rad = 0;              ///< paint: of the light post since the passport's turn
   PoseKind pose_kind = PoseKind::none;
   Nanos pose_distance{};  ///< paint: from mid-exposure to the nearest sample
-  Instant matched_at{};   ///< when the pose bracket was in hand
-  Instant mapped_at{};    ///< when the patch was ready
+  std::optional<Twist>
+      velocity;          ///< paint: of C by the marker's movement, mm/s and rad/s in C; nothing: not known
+  Instant matched_at{};  ///< when the pose bracket was in hand
+  Instant mapped_at{};   ///< when the patch was ready
 };
 
 }  // namespace orcart

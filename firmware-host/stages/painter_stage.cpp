@@ -130,7 +130,8 @@ void PainterStage::painted(const PaintOrder& order, Instant now) noexcept {
                        .X_MC = order.X_MC,
                        .turn_rad = order.turn_rad,
                        .pose_kind = order.pose_kind,
-                       .pose_distance = order.pose_distance};
+                       .pose_distance = order.pose_distance,
+                       .velocity = order.velocity};
   captures_.append(record);
   if (sink_ != nullptr) sink_->keep(order.frame, record);
   done_with(order.frame.buffer);

@@ -156,7 +156,12 @@ void SyncStage::find_zero(const CapturedFrame& frame) noexcept {
 
 void SyncStage::select(const MatchedFrame& matched, Instant now) noexcept {
   const auto request = selector_.claim(matched);
-  if (request && lanes_.selected.try_push({.matched = matched, .request = *request, .decided_at = now}))
+  if (request &&
+      lanes_.selected.try_push({.matched = matched,
+                                .request = *request,
+                                .decided_at = now,
+                                .velocity = history_.velocity(matched.frame.mid_exposure() +
+                                                              settings_.matcher.tracker_against_video)}))
     return;
   (void)lanes_.orders.try_push({.kind = PaintOrderKind::release, .frame = matched.frame});
 }

@@ -30,6 +30,15 @@ Pose<A, B> moved(const Pose<A, B>& X_AB, const Twist& twist) {
           .translation_mm = X_AB.rotation * twist.head<3>() + X_AB.translation_mm};
 }
 
+/// The twist by which moved() takes the first pose to the second.
+template <class A, class B>
+Twist twist_between(const Pose<A, B>& from, const Pose<A, B>& to) {
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(from.rotation.transpose() * to.rotation));
+  Twist twist;
+  twist << from.rotation.transpose() * (to.translation_mm - from.translation_mm), turn.angle() * turn.axis();
+  return twist;
+}
+
 /// Takes a twist in A to the one in B that does the same: moved(I_AA, t) X_AB = moved(X_AB, result t), to
 /// first order (the inverse adjoint; Murray, Li and Sastry 1994, equation 2.58). Nothing allocates.
 template <class A, class B>

@@ -86,6 +86,17 @@ PoseAnswer PoseHistory::predict(const PoseSample& last, Instant t) const noexcep
   return answer;
 }
 
+std::optional<Twist> PoseHistory::velocity(Instant t, Nanos over) const noexcept {
+  const auto [before, after] = neighbours(t);
+  const PoseSample *last = after != nullptr ? after : before, *first = last;
+  if (last == nullptr) return std::nullopt;
+  for (std::size_t age = 0; age < size_ && back(age).measured_at >= last->measured_at - over; ++age)
+    if (complete(back(age)) && back(age).measured_at < first->measured_at) first = &back(age);
+  const double span_s = seconds(last->measured_at - first->measured_at);
+  if (span_s < seconds(over) / 2) return std::nullopt;
+  return twist_between(first->X_RS(), last->X_RS()) / span_s;
+}
+
 bool PoseHistory::decided(Instant t) const noexcept {
   if (at(t).may_paint()) return true;
   if (newest() <= t + settings_.exact_within) return false;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "realtime/geometry/twist.hpp"
 #include "realtime/sync/pose_sample.hpp"
 
 namespace orcart {
@@ -40,6 +41,11 @@ class PoseHistory {
 
   /// There are samples within a period of t on both sides: where at(t) is none, a tool was not seen.
   bool sampled_around(Instant t) const noexcept;
+
+  /// How the scope marker moves in the reference about t: a twist a second (mm/s, rad/s in S's axes) between
+  /// the complete sample next after t, else before, and the oldest no more than `over` before that one. So
+  /// long a base keeps the tracker's noise small. Nothing where the samples span less than half of it.
+  std::optional<Twist> velocity(Instant t, Nanos over = 100ms) const noexcept;
 
   /// measured_at of the newest sample, complete or not; Instant{} before the first.
   Instant newest() const noexcept { return size_ == 0 ? Instant{} : back(0).measured_at; }

@@ -24,6 +24,12 @@ std::optional<Ray> believed_ray(const EvaluationScene& scene, const Capture& cap
 
 }  // namespace
 
+Twist assumed_velocity(const ErrorModel& model) {
+  Twist velocity;
+  velocity << model.speed_mm_s, 0, 0, 0, model.turn_rad_s, 0;
+  return velocity;
+}
+
 Pose<M, C> believed_pose(const EvaluationScene& scene, const Capture& capture, const DrawnErrors& errors) {
   const Pose<S, C>& X_SC = scene.scope.X_SC;
   const Pose<R, S> X_RS = scene.X_MR.inverse() * capture.X_MC * X_SC.inverse();

@@ -31,6 +31,9 @@ struct Capture {
   Twist velocity = Twist::Zero();  ///< mm/s and rad/s, in C
 };
 
+/// As the model takes for granted: along the picture's x, turning about its y.
+Twist assumed_velocity(const ErrorModel& model);
+
 /// X_MC as the cart believes it: X_MR X_TR^-1 X_TS X_SC, each factor with its error.
 Pose<M, C> believed_pose(const EvaluationScene& scene, const Capture& capture, const DrawnErrors& errors);
 

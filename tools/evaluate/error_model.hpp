@@ -26,6 +26,9 @@ constexpr ComponentSet only(Component component) {
   return set;
 }
 
+/// Where the time's standard deviation comes from.
+enum class TimeFrom { assumed, told, session };
+
 /// One standard deviation each, unless said otherwise. Gaussian, independent from set-up to set-up.
 struct ErrorModel {
   /// RMS of a marker's 3-D error, as a tracker's accuracy is stated; each axis has it divided by sqrt(3).
@@ -56,7 +59,7 @@ struct ErrorModel {
   std::optional<Eigen::Matrix<double, 6, 6>> registration_root;  ///< of a twist in R
   std::optional<Eigen::Matrix<double, 11, 11>> lens_root;        ///< of the lens's numbers, as LensStep
   std::optional<Eigen::Matrix3d> window_root;  ///< of the window's place in C, mm: the tip's
-  bool time_told = false;                      ///< time_s is not the assumed one
+  TimeFrom time_from = TimeFrom::assumed;
 };
 
 }  // namespace orcart

@@ -201,8 +201,7 @@ class Evaluator {
   std::vector<double> predicted_at_vertices(const Pose<M, C>& view,
                                             const std::vector<Eigen::Vector3d>& fiducials) const {
     const ErrorSpread spread = spread_of(scene_, model(), fiducials);
-    Capture capture{.X_MC = view};
-    capture.velocity << model().speed_mm_s, 0, 0, 0, model().turn_rad_s, 0;
+    const Capture capture{.X_MC = view, .velocity = assumed_velocity(model())};
     std::vector<double> rms_mm;
     for (const auto& vertex : own_.surface.mesh.vertices_mm) {
       const Eigen::Vector3d place = vertex.cast<double>();

@@ -36,6 +36,11 @@ const char* word_for(bool stated, const char* by) {
   return stated ? by : "assumed";
 }
 
+const char* word_for(TimeFrom from) {
+  if (from == TimeFrom::session) return "session";
+  return word_for(from == TimeFrom::told, "told");
+}
+
 }  // namespace
 
 ErrorModel with_stated(const ErrorModel& assumed, const ScopeModel& scope,
@@ -58,10 +63,10 @@ ErrorModel with_stated(const ErrorModel& assumed, const ScopeModel& scope,
   return model;
 }
 
-ErrorModel with_time(const ErrorModel& assumed, double deviation_s) {
+ErrorModel with_time(const ErrorModel& assumed, double deviation_s, TimeFrom from) {
   ErrorModel model = assumed;
   model.time_s = deviation_s;
-  model.time_told = true;
+  model.time_from = from;
   return model;
 }
 
@@ -76,7 +81,7 @@ std::string sources_text(const ErrorModel& m) {
                       word_for(m.lens_root.has_value(), "passport")) +
          "registration " + registration +
          json::format("; medium %.2f %% (assumed); time %.1f ms (%s)", 100 * m.refraction, 1e3 * m.time_s,
-                      word_for(m.time_told, "told")) +
+                      word_for(m.time_from)) +
          (m.window_root ? json::format("; window %.2f mm (passport)", m.window_root->norm()) : std::string());
 }
 
@@ -85,7 +90,7 @@ std::string sources_json(const ErrorModel& m) {
       "{\"hand-eye\": \"%s\", \"lens\": \"%s\", \"registration\": \"%s\", \"medium\": \"assumed\", \"time\": "
       "\"%s\"}",
       word_for(m.hand_eye_root.has_value(), "passport"), word_for(m.lens_root.has_value(), "passport"),
-      word_for(m.registration_root.has_value(), "registration"), word_for(m.time_told, "told"));
+      word_for(m.registration_root.has_value(), "registration"), word_for(m.time_from));
 }
 
 }  // namespace orcart

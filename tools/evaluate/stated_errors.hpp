@@ -13,8 +13,8 @@ namespace orcart {
 ErrorModel with_stated(const ErrorModel& assumed, const ScopeModel& scope,
                        const RegistrationFile& registration);
 
-/// The time's standard deviation as somebody told it, in place of the assumed one.
-ErrorModel with_time(const ErrorModel& assumed, double deviation_s);
+/// The time's standard deviation as somebody told it, or the session, in place of the assumed one.
+ErrorModel with_time(const ErrorModel& assumed, double deviation_s, TimeFrom from = TimeFrom::told);
 
 /// One line: each part's size, and in brackets where it comes from.
 std::string sources_text(const ErrorModel& model);

@@ -29,6 +29,7 @@ SessionMeta some_meta() {
           .started_utc = "2026-05-04T09:30:00Z",
           .started_at = instant_from_nanos(77),
           .tracker_against_video = -12ms,
+          .tracker_against_video_deviation = 1500us,
           .turn_rad = -0.25};
 }
 
@@ -79,6 +80,8 @@ TEST_F(SessionFile, KeepsACaptureToTheLastBit) {
   EXPECT_EQ(c.facts.X_MC.rotation, expected.X_MC.rotation);
   EXPECT_EQ(c.facts.X_MC.translation_mm, expected.X_MC.translation_mm);
   EXPECT_EQ(c.facts.turn_rad, expected.turn_rad);
+  ASSERT_TRUE(c.facts.velocity);
+  EXPECT_EQ(*c.facts.velocity, *expected.velocity);
   EXPECT_FALSE(c.undone);
 
   const auto picture = read.picture(1);
@@ -122,6 +125,7 @@ TEST_F(SessionFile, KeepsMetaCalibrationEventsAndBudgets) {
   EXPECT_EQ(read.meta()->started_utc, "2026-05-04T09:30:00Z");
   EXPECT_EQ(read.meta()->started_at, instant_from_nanos(77));
   EXPECT_EQ(read.meta()->tracker_against_video, -12ms);
+  EXPECT_EQ(read.meta()->tracker_against_video_deviation, Nanos(1500us));
   EXPECT_DOUBLE_EQ(read.meta()->turn_rad, -0.25);
   EXPECT_EQ(read.calibration()->scope_toml, "name = \"30 degree\"");
   EXPECT_EQ(read.calibration()->surface_hash, "cafe");
@@ -135,6 +139,42 @@ TEST_F(SessionFile, KeepsMetaCalibrationEventsAndBudgets) {
   EXPECT_TRUE(read.check());
 }
 
+TEST_F(SessionFile, KeepsAVelocityThatIsNotKnownAsNone) {
+  SessionWriter session = writer();
+  offer(2);
+  offer(3);
+  offer(4);
+  ASSERT_TRUE(session.write_pending(slots_));
+  const auto captures = reader().captures();
+  ASSERT_EQ(captures->size(), 3U);
+  EXPECT_FALSE(captures->at(0).facts.velocity);
+  EXPECT_TRUE(captures->at(1).facts.velocity);
+  EXPECT_FALSE(captures->at(2).facts.velocity);
+}
+
+TEST_F(SessionFile, OfTheFormWithoutVelocitiesIsReadWithoutThem) {
+  {
+    SessionWriter session = writer();
+    offer(3);
+    ASSERT_TRUE(session.write_pending(slots_));
+  }
+  {
+    auto database = Database::open(file_, Database::Mode::write);
+    ASSERT_TRUE(database);
+    for (int i = 0; i < 6; ++i)
+      ASSERT_TRUE(database->run("ALTER TABLE captures DROP COLUMN v" + std::to_string(i)));
+    ASSERT_TRUE(database->run("DELETE FROM meta WHERE key = 'tracker_against_video_deviation_ns'"));
+    ASSERT_TRUE(database->run("PRAGMA user_version = 2"));
+  }
+  SessionReader read = reader();
+  const auto captures = read.captures();
+  ASSERT_TRUE(captures) << captures.error().message;
+  EXPECT_FALSE(captures->front().facts.velocity);
+  EXPECT_EQ(captures->front().facts.turn_rad, facts_number(3).turn_rad);
+  EXPECT_FALSE(read.meta()->tracker_against_video_deviation);
+  EXPECT_EQ(read.meta()->tracker_against_video, -12ms);
+}
+
 TEST_F(SessionFile, OfTheFormWithoutTurnsIsReadAsOneThatStood) {
   {
     SessionWriter session = writer();
@@ -144,7 +184,8 @@ TEST_F(SessionFile, OfTheFormWithoutTurnsIsReadAsOneThatStood) {
   {
     auto database = Database::open(file_, Database::Mode::write);
     ASSERT_TRUE(database);
-    ASSERT_TRUE(database->run("ALTER TABLE captures DROP COLUMN turn_rad"));
+    for (const char* column : {"turn_rad", "v0", "v1", "v2", "v3", "v4", "v5"})
+      ASSERT_TRUE(database->run(std::string("ALTER TABLE captures DROP COLUMN ") + column));
     ASSERT_TRUE(database->run("PRAGMA user_version = 1"));
   }
   SessionReader read = reader();
@@ -243,11 +284,11 @@ TEST_F(SessionFile, RefusesALaterForm) {
   { SessionWriter session = writer(); }
   {
     auto database = Database::open(file_, Database::Mode::write);
-    ASSERT_TRUE(database->run("PRAGMA user_version = 3"));
+    ASSERT_TRUE(database->run("PRAGMA user_version = 4"));
   }
   const auto opened = SessionReader::open(file_);
   ASSERT_FALSE(opened);
-  EXPECT_NE(opened.error().message.find("has form 3; forms 1 to 2 are accepted"), std::string::npos);
+  EXPECT_NE(opened.error().message.find("has form 4; forms 1 to 3 are accepted"), std::string::npos);
 }
 
 TEST_F(SessionFile, RefusesADamagedPictureByItsNumber) {

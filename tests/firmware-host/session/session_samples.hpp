@@ -65,6 +65,10 @@ inline CaptureFacts facts_number(std::uint32_t number) {
   facts.turn_rad = 0.1 * number;
   facts.pose_kind = PoseKind::interpolated;
   facts.pose_distance = Nanos{number};
+  if (number % 2 == 1) {
+    facts.velocity.emplace();
+    *facts.velocity << 1, -2, 3, 0.1 * number, -0.2, 1.0 / 3;
+  }
   return facts;
 }
 

@@ -60,6 +60,8 @@ TEST_F(SyncStageTest, AcknowledgesAPressAndSelectsTheFirstFrameFromItsEdgeOn) {
   ASSERT_EQ(selected.size(), 1u);
   EXPECT_EQ(selected[0].matched.frame.mid_exposure(), at_ms(132));  // 33, 66, 99, 132
   EXPECT_EQ(selected[0].request.edge_at, at_ms(100));
+  ASSERT_TRUE(selected[0].velocity);
+  EXPECT_NEAR((*selected[0].velocity)[0], kSpeed_mm_per_s, 1e-6);
   EXPECT_EQ(count(PaintOrderKind::fail), 0);
   EXPECT_EQ(count(PaintOrderKind::show), count(PaintOrderKind::release) + 1);
 }

@@ -22,6 +22,14 @@ TEST(Twist, SeenFromAnotherFrameMovesAPointAlike) {
   EXPECT_GT((there - (X_RC * p).mm).norm(), 0.05);
 }
 
+TEST(Twist, BetweenTwoPosesTakesTheFirstToTheSecond) {
+  Twist twist;
+  twist << 2, -1, 3, 0.1, 0.2, -0.3;
+  const Pose<R, C> X_RC = far_and_turned();
+  EXPECT_LT((twist_between(X_RC, moved(X_RC, twist)) - twist).norm(), 1e-12);
+  EXPECT_LT(twist_between(X_RC, X_RC).norm(), 1e-12);
+}
+
 TEST(TwistCovariance, OfATurnActsOverTheLever) {
   TwistCovariance in_R = TwistCovariance::Zero();
   in_R(3, 3) = 1e-6;  // about x

@@ -135,6 +135,37 @@ TEST(PoseHistory, KnowsWhetherTheDeviceLookedAtAll) {
   EXPECT_FALSE(history_of({0}).sampled_around(at_ms(8)));
 }
 
+TEST(PoseHistory, TellsTheVelocityOverATenthOfASecond) {
+  const PoseHistory history = history_of({0, 16, 32, 48, 64, 80, 96, 112, 128});
+  const auto velocity = history.velocity(at_ms(100));
+  ASSERT_TRUE(velocity);
+  EXPECT_NEAR((*velocity)[0], testing::kSpeed_mm_per_s, 1e-6);
+  EXPECT_LT(velocity->tail<5>().norm(), 1e-6);
+}
+
+TEST(PoseHistory, TellsATurnsVelocityInTheMarkersAxes) {
+  PoseHistory history({.period = kPeriod});
+  const double rad_s = 0.5;
+  for (int ms = 0; ms <= 96; ms += 16) {
+    PoseSample sample = sample_at(at_ms(ms));
+    Pose<R, S> X_RS;
+    X_RS.rotation = Eigen::AngleAxisd(1e-3 * ms * rad_s, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    sample.X_TS = sample.X_TR * X_RS;
+    ASSERT_TRUE(history.push(sample));
+  }
+  const auto velocity = history.velocity(at_ms(90));
+  ASSERT_TRUE(velocity);
+  EXPECT_NEAR((*velocity)[4], rad_s, 1e-9);
+}
+
+TEST(PoseHistory, TellsNoVelocityFromTooShortABase) {
+  EXPECT_FALSE(history_of({}).velocity(at_ms(0)));
+  EXPECT_FALSE(history_of({96}).velocity(at_ms(96)));
+  EXPECT_FALSE(history_of({64, 80, 96}).velocity(at_ms(96)));
+  EXPECT_FALSE(history_of({0, 64, 80, 112}, {16, 32, 48}).velocity(at_ms(100)));  // 64 to 112 is 48 ms
+  EXPECT_TRUE(history_of({0, 48, 64, 80, 112}, {16, 32}).velocity(at_ms(100)));
+}
+
 TEST(PoseHistory, AllocatesNothing) {
   PoseHistory history({.period = kPeriod});
   EXPECT_TRUE(testing::zero_allocation([&] {
@@ -142,6 +173,7 @@ TEST(PoseHistory, AllocatesNothing) {
     (void)history.at(at_ms(16 * 190 + 4));
     (void)history.at(at_ms(16 * 199 + 4));
     (void)history.decided(at_ms(16 * 190 + 4));
+    (void)history.velocity(at_ms(16 * 190 + 4));
   }));
 }
 

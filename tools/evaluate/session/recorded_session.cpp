@@ -74,6 +74,8 @@ Result<RecordedSession> RecordedSession::open(const std::filesystem::path& file)
   const auto meta = session.reader_.meta();
   if (!meta) return tl::unexpected(meta.error());
   session.started_at_ = meta->started_at;
+  if (meta->tracker_against_video_deviation)
+    session.time_deviation_s_ = seconds(*meta->tracker_against_video_deviation);
   const auto calibration = session.reader_.calibration();
   if (!calibration) return tl::unexpected(calibration.error());
   auto scope = read_text(calibration->scope_toml, file, "scope.toml",

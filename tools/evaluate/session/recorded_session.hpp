@@ -18,6 +18,8 @@ class RecordedSession {
   double turn_rad() const { return turn_rad_; }
   /// The light post was turned during the session as well: each capture has its own turn since scope()'s.
   bool turned_on_the_way() const;
+  /// Standard deviation of tracker against video, s, where cart.toml told one.
+  std::optional<double> time_deviation_s() const { return time_deviation_s_; }
   const RegistrationFile& registration() const { return registration_; }
   const std::string& surface_hash() const { return surface_hash_; }
   /// In the order of painting, those that were undone left out.
@@ -40,6 +42,7 @@ class RecordedSession {
   std::vector<StoredCapture> captures_;
   std::size_t undone_ = 0;
   Instant started_at_{};
+  std::optional<double> time_deviation_s_;
   double turn_rad_ = 0;
 };
 

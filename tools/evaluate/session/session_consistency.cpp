@@ -22,6 +22,7 @@ std::string name_of(const StoredCapture& capture) {
 struct Earlier {
   const StoredCapture* capture;
   TakenPicture taken;
+  Capture moving;
 };
 
 /// Counts for each gap the pairs that reach across it.
@@ -51,10 +52,12 @@ Result<void> compare_all(RecordedSession& session, const SessionCommand& command
   const auto fiducials = fiducials_of_chance(scene, model.fiducials, random);
   std::deque<Earlier> earlier;
   const auto& captures = session.captures();
+  const auto velocities = capture_velocities(captures, model, report.velocities);
   for (std::size_t i = 0; i < captures.size(); ++i) {
     progress("comparing captures", static_cast<double>(i) / static_cast<double>(captures.size()));
     auto now = session.taken(captures[i]);
     if (!now) return tl::unexpected(now.error());
+    const Capture moving{.X_MC = now->X_MC, .velocity = velocities[i]};
     for (const Earlier& before : earlier) {
       SessionPair pair{.pair = {.first = name_of(*before.capture),
                                 .second = name_of(captures[i]),
@@ -65,11 +68,11 @@ Result<void> compare_all(RecordedSession& session, const SessionCommand& command
         ++(pair.pair.found.looked_at >= kSeenTogether ? report.unmatched : report.without_overlap);
         continue;
       }
-      pair.pair.predicted_mm = predicted_apart_mm(scene, model, fiducials, pair.pair.found,
-                                                  {.X_MC = before.taken.X_MC}, {.X_MC = now->X_MC});
+      pair.pair.predicted_mm =
+          predicted_apart_mm(scene, model, fiducials, pair.pair.found, before.moving, moving);
       report.pairs.push_back(std::move(pair));
     }
-    earlier.push_back({.capture = &captures[i], .taken = *std::move(now)});
+    earlier.push_back({.capture = &captures[i], .taken = *std::move(now), .moving = moving});
     if (earlier.size() > static_cast<std::size_t>(command.earlier)) earlier.pop_front();
   }
   report.gaps = gaps_of(session, report.pairs);
@@ -120,7 +123,11 @@ Result<SessionReport> evaluate_session(const SessionCommand& command, const Eval
                               .X_MR = session->registration().X_MR,
                               .scope_markers_mm = *std::move(scope_markers),
                               .reference_markers_mm = *std::move(reference_markers)};
-  SessionReport report{.model = with_stated(command.model, session->scope(), session->registration()),
+  ErrorModel model = with_stated(command.model, session->scope(), session->registration());
+  if (const auto deviation_s = session->time_deviation_s();
+      deviation_s && model.time_from == TimeFrom::assumed)
+    model = with_time(model, *deviation_s, TimeFrom::session);
+  SessionReport report{.model = model,
                        .session = command.session.filename().string(),
                        .surface = command.surface.filename().string(),
                        .captures = session->captures().size(),

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "tools/evaluate/evaluate_command.hpp"
+#include "tools/evaluate/session/capture_velocities.hpp"
 #include "tools/evaluate/session/recorded_session.hpp"
 
 namespace orcart {
@@ -41,6 +42,7 @@ struct SessionReport {
   /// nothing to hold on to.
   std::size_t unmatched = 0;
   std::vector<SessionGap> gaps;  ///< in time
+  VelocitySources velocities;    ///< of the captures, which the time's error is multiplied by
   std::vector<std::string> notes;
   double seconds = 0;
 

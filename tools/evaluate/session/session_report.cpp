@@ -34,6 +34,18 @@ std::string break_text(const SessionReport& r) {
   return r.alarms() > 0 ? "no one instant explains the alarms" : "no alarm";
 }
 
+std::string velocities_text(const SessionReport& r) {
+  const VelocitySources& v = r.velocities;
+  return format(
+             "velocity: of %zu captures by the cart's tracker samples, of %zu by the captures beside them in "
+             "a "
+             "stream, of %zu assumed",
+             v.stored, v.neighbours, v.assumed) +
+         (v.stored + v.neighbours > 0 ? format("; those known move by %.1f mm/s and %.3f rad/s in the mean",
+                                               v.speed_mm_s, v.turn_rad_s)
+                                      : "");
+}
+
 /// Dots over the second capture's time; the hollow ones are twice the predicted. Alarms are red.
 std::string chart(const SessionReport& r) {
   constexpr double kWidth = 700, kHeight = 220, kLeft = 50, kBase = 190, kTop = 10;
@@ -69,7 +81,7 @@ constexpr const char* kStyle =
 
 std::string text_of(const SessionReport& r) {
   std::string out = "consistency of " + r.session + " on " + r.surface + "\n" + head_of(r) + "\n" +
-                    "errors: " + sources_text(r.model) + "\n" +
+                    "errors: " + sources_text(r.model) + "\n" + velocities_text(r) + "\n" +
                     "   time, s  pair                          apart, mm    p95  patches  predicted\n";
   for (const SessionPair& p : r.pairs)
     out += format("%10.1f  %-14s%-14s  %9.2f  %5.2f  %7zu  %9.2f%s\n", p.second_s, p.pair.first.c_str(),
@@ -96,9 +108,14 @@ std::string json_of(const SessionReport& r) {
          format(
              ", \"captures\": %zu, \"undone\": %zu, \"without_overlap\": %zu, \"unmatched\": %zu, "
              "\"alarms\": %zu, "
-             "\"break\": %s,\n \"pairs\": ",
+             "\"break\": %s,\n ",
              r.captures, r.undone, r.without_overlap, r.unmatched, r.alarms(),
              r.break_in_time() ? "true" : "false") +
+         format(
+             "\"velocity\": {\"stored\": %zu, \"neighbours\": %zu, \"assumed\": %zu, \"mean_mm_s\": %.3f, "
+             "\"mean_rad_s\": %.4f},\n \"pairs\": ",
+             r.velocities.stored, r.velocities.neighbours, r.velocities.assumed, r.velocities.speed_mm_s,
+             r.velocities.turn_rad_s) +
          json::list(pairs) + ",\n \"gaps\": " + json::list(gaps) +
          format(", \"seconds\": %.2f}\n", r.seconds);
 }
@@ -120,7 +137,7 @@ Result<void> write_page(const std::filesystem::path& dir, const SessionReport& r
         p.pair.alarm() ? " class=\"alarm\"" : "", p.second_s, p.pair.first.c_str(), p.pair.second.c_str(),
         p.pair.found.median_mm, p.pair.found.p95_mm, p.pair.found.patches.size(), p.pair.predicted_mm);
   page += "</table>\n";
-  page += "<p>Predicted from: " + sources_text(r.model) + ".</p>\n";
+  page += "<p>Predicted from: " + sources_text(r.model) + "; " + velocities_text(r) + ".</p>\n";
   for (const std::string& note : r.notes) page += "<p>" + note + "</p>\n";
   std::error_code trouble;
   std::filesystem::create_directories(dir, trouble);

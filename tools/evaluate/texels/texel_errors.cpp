@@ -56,9 +56,7 @@ void judge(const EvaluationScene& scene, const Capture& capture, const Landmark&
 }  // namespace
 
 Capture capture_of(const View& view, const ErrorModel& model) {
-  Capture capture{.X_MC = view.X_MC};
-  capture.velocity << model.speed_mm_s, 0, 0, 0, model.turn_rad_s, 0;
-  return capture;
+  return {.X_MC = view.X_MC, .velocity = assumed_velocity(model)};
 }
 
 std::vector<float> predicted_rms_mm(const EvaluationScene& scene, const ErrorModel& model,

@@ -15,6 +15,7 @@
 #include "tests/tools/evaluate/ball_scene.hpp"
 #include "tools/evaluate/error_chain.hpp"
 #include "tools/evaluate/session/session_export.hpp"
+#include "tools/evaluate/stated_errors.hpp"
 #include "tools/registration/poses_file.hpp"
 
 namespace orcart {
@@ -72,12 +73,14 @@ class SessionConsistency : public ::testing::Test {
     double wrong_mm = 0;  ///< believed so far beside the truth, along x
     bool undone = false;
     double turn_rad = 0;
+    double speed_mm_s = 0;  ///< along the picture's x
   };
 
   std::filesystem::path write_session(const std::vector<Taken>& all) {
     const auto file = folder_ / ("s" + std::to_string(++sessions_) + ".orcart");
     SessionWriter writer = SessionWriter::create(file, {.started_utc = "2026-01-01T00:00:00Z",
-                                                        .started_at = instant_from_nanos(0)})
+                                                        .started_at = instant_from_nanos(0),
+                                                        .tracker_against_video_deviation = deviation_})
                                .value();
     EXPECT_TRUE(writer.write_calibration({.scope_toml = text_of_file(folder_ / "scope.toml"),
                                           .registration_toml = text_of_file(folder_ / "registration.toml"),
@@ -93,6 +96,7 @@ class SessionConsistency : public ::testing::Test {
       facts.X_MC = pose(taken.number);
       facts.X_MC.translation_mm.x() += taken.wrong_mm;
       facts.turn_rad = taken.turn_rad;
+      facts.velocity = taken.speed_mm_s * Twist::Unit(0);
       EXPECT_TRUE(slots.offer(frame, facts));
       if (taken.undone) {
         EXPECT_TRUE(slots.undone(unit));
@@ -118,6 +122,7 @@ class SessionConsistency : public ::testing::Test {
   TemporaryFolder folder_;
   std::string hash_;
   int sessions_ = 0;
+  std::optional<Nanos> deviation_;
 };
 
 TEST_F(SessionConsistency, CapturesInTheirPlaceRaiseNoAlarm) {
@@ -152,6 +157,25 @@ TEST_F(SessionConsistency, AReferenceThatSlipsIsFoundInTime) {
     }
   EXPECT_NE(text_of(*report).find("ALARM"), std::string::npos);
   EXPECT_NE(json_of(*report).find("\"break\": true"), std::string::npos);
+}
+
+TEST_F(SessionConsistency, TheTimesErrorGrowsWithTheSpeedOfEachCaptureAndTheSessionsDeviation) {
+  const auto predicted = [&](double speed_mm_s) {
+    const auto report =
+        evaluated(command(write_session({{.number = 0}, {.number = 1, .speed_mm_s = speed_mm_s}})));
+    EXPECT_EQ(report->pairs.size(), 1U);
+    EXPECT_EQ(report->velocities.stored, 2U);
+    return report->pairs.front().pair.predicted_mm;
+  };
+  deviation_ = 5ms;
+  const double still = predicted(0), moving = predicted(100);
+  // 100 mm/s by 5 ms, along the wall as the picture's x lies on it.
+  EXPECT_NEAR(std::sqrt(moving * moving - still * still), 0.5, 0.03);
+  const auto report = evaluated(command(write_session({{0}, {1}})));
+  EXPECT_NE(text_of(*report).find("time 5.0 ms (session)"), std::string::npos) << text_of(*report);
+  auto told = command(write_session({{0}, {1}}));
+  told.model = with_time(told.model, 0.001);
+  EXPECT_NE(text_of(*evaluated(told)).find("time 1.0 ms (told)"), std::string::npos);
 }
 
 TEST_F(SessionConsistency, AShiftBeyondTheSearchIsToldAsNoMatch) {
