@@ -103,11 +103,12 @@ bool is_header(std::string_view line) {
 
 }  // namespace
 
-Result<void> check_still(const std::vector<View>& views, const std::filesystem::path& file) {
+Result<void> check_turns(const std::vector<View>& views, const ScopeModel& scope,
+                         const std::filesystem::path& file) {
   const auto turned = std::ranges::find_if(views, [](const View& view) { return view.turn_rad != 0; });
-  if (turned == views.end()) return {};
+  if (scope.turning || turned == views.end()) return {};
   return fail(file.string() + ": the scope's light post was turned in " + turned->image.filename().string() +
-              "; views at the passport's own turn are accepted here");
+              ", but the passport has no [turning]; the passport of a scope that turns is accepted");
 }
 
 Result<ViewsFile> read_views(const std::filesystem::path& file) {

@@ -7,6 +7,7 @@
 
 #include "realtime/base/result.hpp"
 #include "realtime/geometry/pose.hpp"
+#include "realtime/optics/scope_model.hpp"
 
 namespace orcart {
 
@@ -25,7 +26,8 @@ struct ViewsFile {
 /// to a deviation |R'R - I| of 0.01, and refused beyond.
 Result<ViewsFile> read_views(const std::filesystem::path& file);
 
-/// For what takes the passport's lens for all views: refuses views with a turn.
-Result<void> check_still(const std::vector<View>& views, const std::filesystem::path& file);
+/// Refuses views with a turn through a passport that has no [turning]; `file` is for the sentence.
+Result<void> check_turns(const std::vector<View>& views, const ScopeModel& scope,
+                         const std::filesystem::path& file);
 
 }  // namespace orcart

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "firmware-host/offline/texel_values.hpp"
+#include "realtime/optics/scope_turn.hpp"
 
 namespace orcart {
 namespace {
@@ -68,9 +69,9 @@ AtlasPicture DifferenceMap::colours() const {
   return colours_of({.layout = *layout_, .values = displacement_mm_, .darkest = kDarkest_mm});
 }
 
-Picture DifferenceMap::picture(const Pose<M, C>& X_MC) const {
+Picture DifferenceMap::picture(const Pose<M, C>& X_MC, double turn_rad) const {
   return seen_by_scope({.layout = *layout_, .values = displacement_mm_, .darkest = kDarkest_mm},
-                       surface_->mesh, rays_, *scope_, X_MC);
+                       surface_->mesh, rays_, turned(*scope_, turn_rad), X_MC);
 }
 
 }  // namespace orcart

@@ -20,7 +20,8 @@ class DifferenceMap {
                                       const AtlasLayout& layout, SeenFrom seen_from);
 
   /// The newest view wins where views overlap, as in a painting. A view whose centre ray misses is refused:
-  /// paper mode has no scale for it.
+  /// paper mode has no scale for it. A turn of the light post is in X_MC alone: both modes put rectified rays
+  /// against the surface.
   Result<void> add(const Pose<M, C>& X_MC);
 
   /// Displacements of the texels; their mean, 95th percentile and maximum; `lost` over all views.
@@ -28,8 +29,8 @@ class DifferenceMap {
   /// The ramp's colour at each texel; alpha 0 outside of the views.
   AtlasPicture colours() const;
   /// The surface as the scope at X_MC sees it, shaded, in those colours; grey outside of the views. Of the
-  /// scope's size.
-  Picture picture(const Pose<M, C>& X_MC) const;
+  /// scope's size, through its lens at the turn of its light post.
+  Picture picture(const Pose<M, C>& X_MC, double turn_rad = 0) const;
 
  private:
   DifferenceMap(const Surface& surface, const ScopeModel& scope, const AtlasLayout& layout, RayScene rays,

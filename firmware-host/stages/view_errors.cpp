@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "realtime/optics/scope_turn.hpp"
 #include "realtime/registration/body_covariance.hpp"
 
 namespace orcart {
@@ -40,20 +41,55 @@ double lens_px(const ScopeModel& scope, double part) {
   return std::sqrt(a.lens_centre_px * a.lens_centre_px + (focal_px * focal_px + edge_px * edge_px) / 2);
 }
 
-/// Mean squares across the line of sight at distance d: position + 2 mixed d + turn d^2.
-struct Across {
-  double position = 0, mixed = 0, turn = 0;
-};
+Eigen::Matrix3d across_line(const Eigen::Vector3d& direction) noexcept {
+  return Eigen::Matrix3d::Identity() - direction * direction.transpose();
+}
 
-Across across(const TwistCovariance& covariance, const Eigen::Vector3d& direction) noexcept {
-  const Eigen::Matrix3d flat = Eigen::Matrix3d::Identity() - direction * direction.transpose(),
-                        swing = cross_matrix(direction);
+}  // namespace
+
+double marked_turn_deviation_rad(const Turning& turning, const std::vector<Eigen::Vector3d>& scope_markers_mm,
+                                 const std::vector<Eigen::Vector3d>& second_markers_mm,
+                                 double marker_rms_mm) {
+  const Eigen::Vector3d in_L = turning.R_SL.value_or(Eigen::Matrix3d::Identity()).transpose() * turning.axis;
+  const auto about = [&](const std::vector<Eigen::Vector3d>& markers_mm, const Eigen::Vector3d& axis) {
+    return axis.dot(of_body(markers_mm, marker_rms_mm).bottomRightCorner<3, 3>() * axis);
+  };
+  return std::sqrt(about(scope_markers_mm, turning.axis) + about(second_markers_mm, in_L));
+}
+
+ViewErrors::Across ViewErrors::across(const TwistCovariance& covariance,
+                                      const Eigen::Vector3d& direction) noexcept {
+  const Eigen::Matrix3d flat = across_line(direction), swing = cross_matrix(direction);
   return {.position = (flat * covariance.topLeftCorner<3, 3>()).trace(),
           .mixed = (flat * covariance.topRightCorner<3, 3>() * swing).trace(),
           .turn = (swing * covariance.bottomRightCorner<3, 3>() * swing.transpose()).trace()};
 }
 
-}  // namespace
+ViewErrors::Across ViewErrors::of_light_post(const ScopeModel& scope, double light_post_rad) const {
+  constexpr double kStep_rad = 1e-4;
+  Across mean;
+  if (!scope.turning || light_post_rad == 0) return mean;
+  for (const Eigen::Vector3d& direction : directions_) {
+    const auto pixel = project(scope.lens, direction);
+    if (!pixel) continue;
+    Eigen::Vector3d origin = Eigen::Vector3d::Zero(), ray = Eigen::Vector3d::Zero();
+    bool seen = true;
+    for (const double side : {1.0, -1.0}) {
+      const TurnedOptics optics = optics_at(scope, side * kStep_rad);
+      const Pose<C, C> X_CC = scope.X_SC.inverse() * optics.X_SC;
+      const auto in_turned = direction_of(optics.lens, *pixel);
+      seen = seen && in_turned;
+      const double part = side * light_post_rad / (2 * kStep_rad);
+      origin += part * X_CC.translation_mm;
+      if (in_turned) ray += part * (X_CC.rotation * *in_turned);
+    }
+    if (!seen) continue;
+    const Eigen::Vector3d aside = across_line(direction) * origin;
+    mean.position += aside.squaredNorm() / 5, mean.mixed += aside.dot(ray) / 5;
+    mean.turn += ray.squaredNorm() / 5;
+  }
+  return mean;
+}
 
 ViewErrors::ViewErrors(const ScopeModel& scope, const Pose<M, R>& X_MR, const ChainErrors& chain)
     : X_RM_(X_MR.inverse()) {
@@ -69,6 +105,7 @@ ViewErrors::ViewErrors(const ScopeModel& scope, const Pose<M, R>& X_MR, const Ch
   directions_ = {Eigen::Vector3d{0, 0, 1}, Eigen::Vector3d{aside, 0, ahead},
                  Eigen::Vector3d{-aside, 0, ahead}, Eigen::Vector3d{0, aside, ahead},
                  Eigen::Vector3d{0, -aside, ahead}};
+  light_post_ = of_light_post(scope, chain.light_post_rad);
   grain2_mm2_ = chain.texel_mm * chain.texel_mm / 6;  // evenly within a texel, both axes
   bend2_rad2_ = std::pow(a.refraction * aside / ahead, 2);
   pixels_ = std::numbers::sqrt2 * std::hypot(lens_px(scope, kPart), a.picture_px);
@@ -76,7 +113,7 @@ ViewErrors::ViewErrors(const ScopeModel& scope, const Pose<M, R>& X_MR, const Ch
 
 ViewError ViewErrors::at(const Pose<M, C>& X_MC) const noexcept {
   const TwistCovariance covariance = in_C_ + covariance_seen_from(X_RM_ * X_MC, in_R_);
-  Across mean;
+  Across mean = light_post_;
   for (const Eigen::Vector3d& direction : directions_) {
     const Across one = across(covariance, direction);
     mean.position += one.position / 5, mean.mixed += one.mixed / 5, mean.turn += one.turn / 5;

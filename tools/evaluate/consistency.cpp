@@ -38,11 +38,15 @@ double grey_at(const Picture& picture, const Eigen::Vector2d& pixel) {
          fy * ((1 - fx) * at(x0, y0 + 1) + fx * at(x0 + 1, y0 + 1));
 }
 
-std::optional<Eigen::Vector2d> seen_at(const EvaluationScene& scene, const Pose<M, C>& X_MC,
+const ScopeModel& scope_of(const EvaluationScene& scene, const TakenPicture& taken) {
+  return taken.scope != nullptr ? *taken.scope : scene.scope;
+}
+
+std::optional<Eigen::Vector2d> seen_at(const ScopeModel& scope, const Pose<M, C>& X_MC,
                                        const Eigen::Vector3d& place_mm) {
   const Eigen::Vector3d p_C = X_MC.rotation.transpose() * (place_mm - X_MC.translation_mm);
-  const auto pixel = project(scene.scope.lens, p_C);
-  const CircularMask& mask = scene.scope.mask;
+  const auto pixel = project(scope.lens, p_C);
+  const CircularMask& mask = scope.mask;
   if (!pixel ||
       (*pixel - Eigen::Vector2d(mask.cx_px, mask.cy_px)).norm() > mask.radius_px - mask.soft_edge_px)
     return std::nullopt;
@@ -58,7 +62,7 @@ std::optional<double> grey_on_surface(const EvaluationScene& scene, const TakenP
                                       (-at.normal).cast<float>(), 2 * kLiftMm);
   if (!hit) return std::nullopt;
   const Eigen::Vector3d place = flat + static_cast<double>(kLiftMm - hit->distance_mm) * at.normal;
-  const auto pixel = seen_at(scene, taken.X_MC, place);
+  const auto pixel = seen_at(scope_of(scene, taken), taken.X_MC, place);
   if (!pixel || scene.rays.hidden(taken.X_MC.translation_mm.cast<float>(), place.cast<float>(), 0.2F))
     return std::nullopt;
   return grey_at(taken.picture, *pixel);
@@ -144,8 +148,8 @@ std::optional<PatchShift> shift_of(const Patch& a, const Patch& b, const Landmar
 PairConsistency compare(const EvaluationScene& scene, const TakenPicture& first, const TakenPicture& second,
                         const ConsistencySettings& settings, RandomStream& random) {
   PairConsistency pair;
-  const auto places =
-      landmarks_of_chance(scene, first.X_MC, static_cast<std::size_t>(settings.patches), random);
+  const auto places = landmarks_of_chance(through(scene, scope_of(scene, first)), first.X_MC,
+                                          static_cast<std::size_t>(settings.patches), random);
   for (const Landmark& place : places) {
     const Patch a = patch_of(scene, first, place, settings.patch_mm / 2, settings.step_mm);
     if (a.unseen_within(0, 0, a.edge) > 0) continue;

@@ -13,6 +13,7 @@ namespace orcart {
 struct TakenPicture {
   Picture picture;
   Pose<M, C> X_MC;
+  const ScopeModel* scope = nullptr;  ///< at the turn of its light post, lent; null: the scene's
 };
 
 /// One patch of surface that both pictures paint.

@@ -75,6 +75,7 @@ DrawnErrors drawn_errors(const EvaluationScene& scene, const ErrorModel& model, 
   }
   all.refraction = model.refraction * random.gaussian();
   all.time_s = model.time_s * random.gaussian();
+  if (model.light_post_rad > 0) all.light_post_rad = model.light_post_rad * random.gaussian();
   DrawnErrors kept;
   if (has(set, Component::tracker)) {
     kept.scope = all.scope;
@@ -87,6 +88,7 @@ DrawnErrors drawn_errors(const EvaluationScene& scene, const ErrorModel& model, 
     kept.lens_numbers = all.lens_numbers;
   }
   if (has(set, Component::medium)) kept.refraction = all.refraction;
+  if (has(set, Component::light_post)) kept.light_post_rad = all.light_post_rad;
   if (has(set, Component::time)) kept.time_s = all.time_s;
   return kept;
 }

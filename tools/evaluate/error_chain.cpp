@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "realtime/optics/scope_turn.hpp"
+
 namespace orcart {
 
 namespace {
@@ -31,22 +33,24 @@ Twist assumed_velocity(const ErrorModel& model) {
 }
 
 Pose<M, C> believed_pose(const EvaluationScene& scene, const Capture& capture, const DrawnErrors& errors) {
-  const Pose<S, C>& X_SC = scene.scope.X_SC;
-  const Pose<R, S> X_RS = scene.X_MR.inverse() * capture.X_MC * X_SC.inverse();
+  const Pose<R, S> X_RS = scene.X_MR.inverse() * capture.X_MC * scene.scope.X_SC.inverse();
   const Pose<R, R> seen_reference = moved(Pose<R, R>{}, errors.reference);
   const Pose<M, S> X_MS =
       moved(scene.X_MR, errors.registration) * seen_reference.inverse() * moved(X_RS, errors.scope);
+  const Pose<S, C> X_SC =
+      errors.light_post_rad == 0 ? scene.scope.X_SC : optics_at(scene.scope, errors.light_post_rad).X_SC;
   return moved(X_MS * moved(X_SC, errors.hand_eye), capture.velocity * errors.time_s);
 }
 
 std::optional<Eigen::Vector3d> believed_direction(const EvaluationScene& scene, const Eigen::Vector2d& pixel,
                                                   const DrawnErrors& errors) {
   const ScopeModel& scope = scene.scope;
+  const Lens lens = errors.light_post_rad == 0 ? scope.lens : optics_at(scope, errors.light_post_rad).lens;
   const Eigen::Vector2d centre(scope.lens.cx_px, scope.lens.cy_px), out = pixel - centre;
   const double part = out.norm() / scope.mask.radius_px;
   const double stretch = errors.lens[2] + errors.lens[3] / scope.mask.radius_px * part * part;
   const Eigen::Vector2d moved_pixel = pixel + errors.lens.head<2>() + stretch * out;
-  auto direction = direction_of(stepped(scope.lens, errors.lens_numbers), moved_pixel);
+  auto direction = direction_of(stepped(lens, errors.lens_numbers), moved_pixel);
   if (!direction || errors.refraction == 0) return direction;
   const double sine = direction->head<2>().norm() * (1 + errors.refraction);  // Snell at a flat window
   if (sine >= 1) return std::nullopt;

@@ -16,6 +16,7 @@ struct DrawnErrors {
   Eigen::Vector4d lens = Eigen::Vector4d::Zero();  ///< centre x, y (px), focal (relative), edge (px)
   LensStep lens_numbers = LensStep::Zero();        ///< added to the lens's own numbers
   double refraction = 0;                           ///< relative
+  double light_post_rad = 0;                       ///< the turn is believed to be more by this
   double time_s = 0;                               ///< the pose is this much later than the picture
 };
 

@@ -12,14 +12,14 @@
 namespace orcart {
 
 /// Where an error comes from. Each can be drawn alone.
-enum class Component { tracker, hand_eye, registration, lens, medium, time, mapping };
-inline constexpr std::size_t kComponents = 7;
+enum class Component { tracker, hand_eye, registration, lens, medium, time, light_post, mapping };
+inline constexpr std::size_t kComponents = 8;
 inline constexpr std::array<const char*, kComponents> kComponentNames{
-    "tracker", "hand-eye", "registration", "lens", "medium", "time", "mapping"};
+    "tracker", "hand-eye", "registration", "lens", "medium", "time", "light post", "mapping"};
 
 /// Which components are drawn.
 using ComponentSet = std::array<bool, kComponents>;
-inline constexpr ComponentSet kAllComponents{true, true, true, true, true, true, true};
+inline constexpr ComponentSet kAllComponents{true, true, true, true, true, true, true, true};
 constexpr ComponentSet only(Component component) {
   ComponentSet set{};
   set[static_cast<std::size_t>(component)] = true;
@@ -50,6 +50,8 @@ struct ErrorModel {
   double time_s = kAssumedErrors.time_s;  ///< of the calibrated offset and the tracker's latency together
   double speed_mm_s = kAssumedErrors.speed_mm_s;  ///< of the tip at a capture, in a direction of chance
   double turn_rad_s = kAssumedErrors.turn_rad_s;  ///< likewise
+  double light_post_rad =
+      0;  ///< of an angled scope's turn; with_stated() assumes it where there is [turning]
   double picture_px = kAssumedErrors.picture_px;  ///< of a landmark's place in the picture, each axis
   double texel_mm = 0.15;                         ///< edge of a texel of the atlas: the paint's own grain
 

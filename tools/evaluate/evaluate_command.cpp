@@ -11,6 +11,7 @@
 #include "tools/evaluate/marker_bodies.hpp"
 #include "tools/evaluate/pair_prediction.hpp"
 #include "tools/evaluate/stated_errors.hpp"
+#include "tools/evaluate/turned_scenes.hpp"
 #include "tools/mesh/mesh_pictures.hpp"
 
 namespace orcart {
@@ -22,6 +23,7 @@ struct Belongings {
   Surface surface;
   RayScene rays;
   ScopeModel scope;
+  RegistrationFile registration;
 };
 
 class Evaluator {
@@ -67,7 +69,8 @@ class Evaluator {
       PairReport pair{.first = "capture " + std::to_string(2 * i + 1),
                       .second = "capture " + std::to_string(2 * i + 2)};
       pair.found = compare(scene_, a, b, {}, random);
-      pair.predicted_mm = predicted_apart_mm(scene_, model(), fiducials, pair.found, first, second);
+      pair.predicted_mm =
+          predicted_apart_mm(fiducials, pair.found, {scene_, model(), first}, {scene_, model(), second});
       pair.true_mm = true_shift_mm(pair.found, {first.X_MC, believed_a}, {second.X_MC, b.X_MC});
       report.pairs.push_back(std::move(pair));
     }
@@ -77,10 +80,15 @@ class Evaluator {
   Result<void> compare_recorded(EvaluationReport& report) {
     const auto file = read_views(command_.views);
     if (!file) return tl::unexpected(file.error());
-    if (auto still = check_still(file->views, command_.views); !still) return still;
+    if (auto turns = check_turns(file->views, own_.scope, command_.views); !turns) return turns;
+    TurnedScenes turned(scene_, model(), own_.registration);
     RandomStream random(command_.simulation.seed, 2'000'000);
     const auto fiducials = fiducials_of_chance(scene_, model().fiducials, random);
     std::optional<TakenPicture> before;
+    const auto judged = [&](const View& view) {
+      const TurnedScene& at = turned.at(view.turn_rad);
+      return JudgedCapture{at.scene, at.model, {.X_MC = view.X_MC}};
+    };
     for (std::size_t i = 0; i < file->views.size(); ++i) {
       progress_("comparing recorded pictures",
                 static_cast<double>(i) / static_cast<double>(file->views.size()));
@@ -90,13 +98,15 @@ class Evaluator {
         return fail(file->views[i].image.string() + ": is " + std::to_string(picture->width_px) + "x" +
                     std::to_string(picture->height_px) + " pixels; the passport is for " +
                     std::to_string(own_.scope.width_px) + "x" + std::to_string(own_.scope.height_px));
-      TakenPicture now{.picture = *std::move(picture), .X_MC = file->views[i].X_MC};
+      TakenPicture now{.picture = *std::move(picture),
+                       .X_MC = file->views[i].X_MC,
+                       .scope = &turned.at(file->views[i].turn_rad).scope};
       if (before) {
         PairReport pair{.first = file->views[i - 1].image.filename().string(),
                         .second = file->views[i].image.filename().string(),
                         .found = compare(scene_, *before, now, {}, random)};
-        pair.predicted_mm = predicted_apart_mm(scene_, model(), fiducials, pair.found, {.X_MC = before->X_MC},
-                                               {.X_MC = now.X_MC});
+        pair.predicted_mm =
+            predicted_apart_mm(fiducials, pair.found, judged(file->views[i - 1]), judged(file->views[i]));
         report.pairs.push_back(std::move(pair));
       }
       before = std::move(now);
@@ -227,7 +237,12 @@ Result<Belongings> read_belongings(const EvaluateCommand& command) {
   if (!rays) return tl::unexpected(rays.error());
   auto scope = read_scope(command.scope);
   if (!scope) return tl::unexpected(scope.error());
-  return Belongings{.surface = *std::move(surface), .rays = *std::move(rays), .scope = *std::move(scope)};
+  auto registration = read_registration(command.registration);
+  if (!registration) return tl::unexpected(registration.error());
+  return Belongings{.surface = *std::move(surface),
+                    .rays = *std::move(rays),
+                    .scope = *std::move(scope),
+                    .registration = *std::move(registration)};
 }
 
 }  // namespace
@@ -236,8 +251,6 @@ Result<EvaluationReport> evaluate(const EvaluateCommand& command, const Evaluate
   const auto began = std::chrono::steady_clock::now();
   const auto own = read_belongings(command);
   if (!own) return tl::unexpected(own.error());
-  const auto registration = read_registration(command.registration);
-  if (!registration) return tl::unexpected(registration.error());
   auto scope_markers = markers_of_body(command.scope_rom),
        reference_markers = markers_of_body(command.reference_rom);
   if (!scope_markers) return tl::unexpected(scope_markers.error());
@@ -249,14 +262,14 @@ Result<EvaluationReport> evaluate(const EvaluateCommand& command, const Evaluate
                           .seed = command.simulation.seed,
                           .setups = command.simulation.setups};
   EvaluateCommand stated = command;
-  stated.simulation.model = with_stated(command.simulation.model, own->scope, *registration);
+  stated.simulation.model = with_stated(command.simulation.model, own->scope, own->registration);
   report.model = stated.simulation.model;
   Evaluator evaluator(stated, progress, *own,
                       {.mesh = own->surface.mesh,
                        .rays = own->rays,
                        .scope = own->scope,
                        .seen_from = command.seen_from,
-                       .X_MR = registration->X_MR,
+                       .X_MR = own->registration.X_MR,
                        .scope_markers_mm = *std::move(scope_markers),
                        .reference_markers_mm = *std::move(reference_markers)});
   if (auto done = evaluator.simulate_all(report); !done) return tl::unexpected(done.error());

@@ -32,6 +32,15 @@ const Statistics& row_of(const SimulationResult& result, int row) {
   return row == 0 ? result.tracking : row == 1 ? result.tip : result.mapping;
 }
 
+/// A scope that does not turn has no part of its light post.
+std::vector<std::size_t> parts_of(const NoiseRun& run) {
+  std::vector<std::size_t> parts;
+  for (std::size_t c = 0; c < kComponents; ++c)
+    if (static_cast<Component>(c) != Component::light_post || run.model.light_post_rad > 0)
+      parts.push_back(c);
+  return parts;
+}
+
 std::string table_text(const NoiseRun& run) {
   std::string out =
       text("\n%s: %.2f mm RMS a marker, %d set-ups of chance (%.1f s)\n", run.name.c_str(),
@@ -43,7 +52,7 @@ std::string table_text(const NoiseRun& run) {
   }
   out += paper_row_text("tip in 3-D", run.result.tip_3d, nullptr);
   out += "budget of the mapping error, each part alone\n";
-  for (std::size_t c = 0; c < kComponents; ++c) {
+  for (const std::size_t c : parts_of(run)) {
     const Statistics& s = run.result.alone[c];
     out += text("  %-13s %5.3f  %5.3f  %5.3f  %5.2f%s\n", kComponentNames[c], s.mean, s.sd, s.p95, s.max,
                 c + 1 == kComponents ? "   (the floor: picture and texel)" : "");
@@ -103,16 +112,19 @@ std::string budget_svg(const NoiseRun& run) {
   constexpr double kWidth = 640, kRow = 24, kLeft = 110;
   double most = run.result.mapping.p95;
   for (const Statistics& s : run.result.alone) most = std::max(most, s.p95);
+  const std::vector<std::size_t> parts = parts_of(run);
+  const double height = kRow * static_cast<double>(parts.size() + 1);
   std::string out = text("<svg viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" height=\"%.0f\" font-size=\"12\">",
-                         kWidth, kRow * (kComponents + 1), kWidth, kRow * (kComponents + 1));
-  for (std::size_t c = 0; c <= kComponents; ++c) {
-    const Statistics& s = c < kComponents ? run.result.alone[c] : run.result.mapping;
-    const double y = kRow * static_cast<double>(c), scale = (kWidth - kLeft - 150) / most;
+                         kWidth, height, kWidth, height);
+  for (std::size_t row = 0; row <= parts.size(); ++row) {
+    const bool alone = row < parts.size();
+    const Statistics& s = alone ? run.result.alone[parts[row]] : run.result.mapping;
+    const double y = kRow * static_cast<double>(row), scale = (kWidth - kLeft - 150) / most;
     out += text(
                "<text x=\"0\" y=\"%.0f\">%s</text><rect x=\"%.0f\" y=\"%.0f\" width=\"%.1f\" height=\"16\" "
                "fill=\"#9cc5d3\"/><rect x=\"%.0f\" y=\"%.0f\" width=\"%.1f\" height=\"16\" fill=\"%s\"/>",
-               y + 15, c < kComponents ? kComponentNames[c] : "all together", kLeft, y + 3, s.p95 * scale,
-               kLeft, y + 3, s.mean * scale, c < kComponents ? "#1f6f8b" : "#b0562b") +
+               y + 15, alone ? kComponentNames[parts[row]] : "all together", kLeft, y + 3, s.p95 * scale,
+               kLeft, y + 3, s.mean * scale, alone ? "#1f6f8b" : "#b0562b") +
            text("<text x=\"%.1f\" y=\"%.0f\">%.2f mean, %.2f p95</text>", kLeft + s.p95 * scale + 6, y + 15,
                 s.mean, s.p95);
   }

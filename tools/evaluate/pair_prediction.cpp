@@ -17,16 +17,17 @@ std::optional<Landmark> landmark_of(const EvaluationScene& scene, const Pose<M, 
 
 }  // namespace
 
-double predicted_apart_mm(const EvaluationScene& scene, const ErrorModel& model,
-                          const std::vector<Eigen::Vector3d>& fiducials_M_mm, const PairConsistency& pair,
-                          const Capture& first, const Capture& second) {
+double predicted_apart_mm(const std::vector<Eigen::Vector3d>& fiducials_M_mm, const PairConsistency& pair,
+                          const JudgedCapture& first, const JudgedCapture& second) {
   if (pair.patches.empty()) return 0;
-  const ErrorSpread spread = spread_of(scene, model, fiducials_M_mm);
+  const ErrorSpread spread =
+      spread_of(first.scene, first.model, fiducials_M_mm);  // of no lens: as the second's
   double sum = 0;
   for (const PatchShift& patch : pair.patches)
-    for (const Capture* capture : {&first, &second}) {
-      const auto landmark = landmark_of(scene, capture->X_MC, patch);
-      const auto error = landmark ? predict(scene, model, spread, *capture, *landmark, kApart) : std::nullopt;
+    for (const JudgedCapture* one : {&first, &second}) {
+      const auto landmark = landmark_of(one->scene, one->capture.X_MC, patch);
+      const auto error =
+          landmark ? predict(one->scene, one->model, spread, one->capture, *landmark, kApart) : std::nullopt;
       if (error) sum += error->covariance_mm2.trace();
     }
   return std::sqrt(sum / static_cast<double>(pair.patches.size()));

@@ -7,11 +7,17 @@
 namespace orcart {
 
 /// What two captures of one set-up do not share.
-inline constexpr ComponentSet kApart{true, true, false, true, true, true, true};
+inline constexpr ComponentSet kApart{true, true, false, true, true, true, true, true};
+
+/// A capture with the scene and the errors at the turn of its light post. Lent.
+struct JudgedCapture {
+  const EvaluationScene& scene;
+  const ErrorModel& model;
+  Capture capture;
+};
 
 /// RMS over the patches of what propagation expects between the two, mm; 0 without patches.
-double predicted_apart_mm(const EvaluationScene& scene, const ErrorModel& model,
-                          const std::vector<Eigen::Vector3d>& fiducials_M_mm, const PairConsistency& pair,
-                          const Capture& first, const Capture& second);
+double predicted_apart_mm(const std::vector<Eigen::Vector3d>& fiducials_M_mm, const PairConsistency& pair,
+                          const JudgedCapture& first, const JudgedCapture& second);
 
 }  // namespace orcart

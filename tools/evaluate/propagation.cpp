@@ -52,6 +52,7 @@ class Propagation {
             .lens = -e.lens,
             .lens_numbers = -e.lens_numbers,
             .refraction = -e.refraction,
+            .light_post_rad = -e.light_post_rad,
             .time_s = -e.time_s};
   }
   static LandmarkErrors negated(const LandmarkErrors& e) {
@@ -125,6 +126,8 @@ std::optional<PredictedError> predict(const EvaluationScene& scene, const ErrorM
   }
   if (has(Component::lens)) add_lens(model, sum);
   if (has(Component::medium)) sum.add({.refraction = model.refraction});
+  if (has(Component::light_post) && model.light_post_rad > 0)
+    sum.add({.light_post_rad = model.light_post_rad});
   if (has(Component::time)) sum.add({.time_s = model.time_s});
   if (!has(Component::mapping)) return sum.result(0);
   sum.add({}, {.picture_px = {model.picture_px, 0}});

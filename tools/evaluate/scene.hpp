@@ -20,6 +20,17 @@ struct EvaluationScene {
   std::vector<Eigen::Vector3d> scope_markers_mm, reference_markers_mm;  ///< in S and R
 };
 
+/// The same scene through another scope, which is lent: the passport at a turn of the light post.
+inline EvaluationScene through(const EvaluationScene& scene, const ScopeModel& scope) {
+  return {.mesh = scene.mesh,
+          .rays = scene.rays,
+          .scope = scope,
+          .seen_from = scene.seen_from,
+          .X_MR = scene.X_MR,
+          .scope_markers_mm = scene.scope_markers_mm,
+          .reference_markers_mm = scene.reference_markers_mm};
+}
+
 /// A view of chance: at a random point of the surface, backed off along its normal as far as there is room
 /// (4 to 25 mm), tilted by up to 25 degrees, rolled at will, at least 2 mm from any wall. Nothing where a
 /// hundred tries found no such place.

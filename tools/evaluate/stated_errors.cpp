@@ -2,6 +2,7 @@
 #include "tools/evaluate/stated_errors.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Eigenvalues>
 
@@ -59,6 +60,7 @@ ErrorModel with_stated(const ErrorModel& assumed, const ScopeModel& scope,
     model.lens_edge_px = lens_deviation_px(scope.lens, lens, edge_rad(scope));
   }
   if (scope.window_covariance) model.window_root = root_of(*scope.window_covariance);
+  if (scope.turning && model.light_post_rad == 0) model.light_post_rad = kAssumedErrors.light_post_rad;
   if (registration.covariance) model.registration_root = root_of(*registration.covariance);
   return model;
 }
@@ -82,7 +84,11 @@ std::string sources_text(const ErrorModel& m) {
          "registration " + registration +
          json::format("; medium %.2f %% (assumed); time %.1f ms (%s)", 100 * m.refraction, 1e3 * m.time_s,
                       word_for(m.time_from)) +
-         (m.window_root ? json::format("; window %.2f mm (passport)", m.window_root->norm()) : std::string());
+         (m.window_root ? json::format("; window %.2f mm (passport)", m.window_root->norm())
+                        : std::string()) +
+         (m.light_post_rad > 0 ? json::format("; light post's turn %.2f degrees (assumed)",
+                                              m.light_post_rad * 180 / std::numbers::pi)
+                               : std::string());
 }
 
 std::string sources_json(const ErrorModel& m) {

@@ -19,10 +19,9 @@ Result<DifferenceMap> difference_of(const Surface& surface, const ScopeModel& sc
 }
 
 Result<void> write_difference(const std::string& file, const DifferenceMap& map, const Surface& surface,
-                              std::span<const std::array<Eigen::Vector2f, 3>> places,
-                              const Pose<M, C>& last) {
+                              std::span<const std::array<Eigen::Vector2f, 3>> places, const View& last) {
   if (file.ends_with(".png")) {
-    const Picture picture = map.picture(last);
+    const Picture picture = map.picture(last.X_MC, last.turn_rad);
     return write_png(file, picture.width_px, picture.height_px, picture.rgba);
   }
   const AtlasPicture colours = map.colours();

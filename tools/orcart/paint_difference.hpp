@@ -17,10 +17,10 @@ Result<DifferenceMap> difference_of(const Surface& surface, const ScopeModel& sc
                                     const AtlasLayout& layout, SeenFrom seen_from,
                                     const std::vector<View>& views);
 
-/// A textured surface, or where `file` ends in .png what the scope at `last` sees. `places` as write_textured
-/// wants them.
+/// A textured surface, or where `file` ends in .png what the scope at the view `last` sees, turned as it was.
+/// `places` as write_textured wants them.
 Result<void> write_difference(const std::string& file, const DifferenceMap& map, const Surface& surface,
-                              std::span<const std::array<Eigen::Vector2f, 3>> places, const Pose<M, C>& last);
+                              std::span<const std::array<Eigen::Vector2f, 3>> places, const View& last);
 
 std::string difference_text(const ModeDifference& difference, const std::string& file);
 /// A member of an object, with its comma.

@@ -132,9 +132,8 @@ Result<Inputs> read_inputs(const Arguments& arguments) {
   auto views = read_views(arguments.views);
   if (!views) return tl::unexpected(views.error());
   warn(views->notes);
-  const bool turns = std::ranges::any_of(views->views, [](const View& view) { return view.turn_rad != 0; });
-  if (turns && !scope->turning)
-    return fail(arguments.views + ": has turns, but " + arguments.scope + " has no [turning]");
+  if (auto turns = check_turns(views->views, *scope, arguments.views); !turns)
+    return tl::unexpected(turns.error());
   return Inputs{std::move(*surface), std::move(*scope), std::move(views->views)};
 }
 
@@ -224,7 +223,7 @@ Result<Summary> paint(const Arguments& arguments) {
   if (!written) return tl::unexpected(written.error());
   if (difference)
     if (auto done = write_difference(arguments.difference, *difference, inputs->surface, places,
-                                     inputs->views.back().X_MC);
+                                     inputs->views.back());
         !done)
       return tl::unexpected(done.error());
   Summary summary{.views = inputs->views.size(),

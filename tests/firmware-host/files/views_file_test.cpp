@@ -114,10 +114,13 @@ TEST(ViewsFile, ReadsTheTurnOfAScopeThatTurned) {
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->views[0].turn_rad, -0.25);
   EXPECT_EQ(read->views[1].turn_rad, 0);
-  const auto still = check_still(read->views, "views.csv");
-  ASSERT_FALSE(still);
-  EXPECT_NE(still.error().message.find("turned in a.png"), std::string::npos) << still.error().message;
-  EXPECT_TRUE(check_still({read->views[1]}, "views.csv"));
+  ScopeModel scope;
+  const auto refused = check_turns(read->views, scope, "views.csv");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("turned in a.png"), std::string::npos) << refused.error().message;
+  EXPECT_TRUE(check_turns({read->views[1]}, scope, "views.csv"));
+  scope.turning.emplace();
+  EXPECT_TRUE(check_turns(read->views, scope, "views.csv"));
   EXPECT_NE(error_of("a.png,1,0,0,0,0,1,0,0,0,0,1,0,left\n").find("turn_rad is \"left\""), std::string::npos);
 }
 

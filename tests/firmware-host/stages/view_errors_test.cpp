@@ -76,6 +76,53 @@ TEST(ViewErrors, OfTheScopesMarkersActOverTheLeverToTheTip) {
               at_15, 1e-4);
 }
 
+ScopeModel turning_scope() {
+  ScopeModel scope = exact_scope();
+  scope.turning = Turning{.centre_px = {320 - 34, 240}};  // a tenth of the focal length beside the lens's own
+  return scope;
+}
+
+TEST(ViewErrors, OfALightPostSwingWhatLiesBesideItsCentre) {
+  ChainErrors chain = nothing();
+  chain.light_post_rad = 0.01;
+  const ViewError error = ViewErrors(turning_scope(), {}, chain).at({});
+  EXPECT_NEAR(error.position_mm, 0, 1e-6);
+  EXPECT_NEAR(error.angle_rad, 0.01 * 0.1, 1e-7);
+}
+
+TEST(ViewErrors, OfALightPostGrowTowardsThePicturesEdge) {
+  ScopeModel scope = turning_scope();
+  scope.turning->centre_px = {320, 240};
+  scope.cone_half_angle_rad = 0.6;
+  ChainErrors chain = nothing();
+  const double without = static_cast<double>(ViewErrors(scope, {}, chain).at({}).angle_rad);
+  chain.light_post_rad = 0.01;
+  const double with = static_cast<double>(ViewErrors(scope, {}, chain).at({}).angle_rad);
+  // Four of five directions, at two thirds of the cone.
+  EXPECT_NEAR(std::sqrt(with * with - without * without), 0.01 * std::sin(0.4) * std::sqrt(0.8), 1e-6);
+}
+
+TEST(ViewErrors, OfALightPostUnderAMarkerOnTheHeadActOverTheWayToTheShaft) {
+  ScopeModel scope = turning_scope();
+  scope.turning = Turning{.centre_px = {320, 240}, .marker = TurnMarker::head, .axis_point_mm = {5, 0, 0}};
+  ChainErrors chain = nothing();
+  chain.light_post_rad = 0.01;
+  EXPECT_NEAR(ViewErrors(scope, {}, chain).at({}).position_mm, 5 * 0.01, 1e-6);
+  EXPECT_EQ(ViewErrors(exact_scope(), {}, chain).at({}).position_mm,
+            ViewErrors(exact_scope(), {}, nothing()).at({}).position_mm)
+      << "a scope in one piece has no light post to turn";
+}
+
+TEST(MarkedTurn, IsOffByBothBodiesTurnsAboutTheShaft) {
+  const std::vector<Eigen::Vector3d> markers{{30, 0, 0}, {-30, 0, 0}, {0, 30, 0}, {0, -30, 0}};
+  // About z: each marker's two axes across, over four times 30^2; about x: two markers, over 2 times 30^2.
+  const double sigma = 0.12 / std::numbers::sqrt3, z = sigma / 60, x = sigma / std::sqrt(1800.0);
+  Turning turning;
+  EXPECT_NEAR(marked_turn_deviation_rad(turning, markers, markers, 0.12), std::hypot(z, z), 1e-9);
+  turning.R_SL = Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  EXPECT_NEAR(marked_turn_deviation_rad(turning, markers, markers, 0.12), std::hypot(z, x), 1e-9);
+}
+
 TEST(ViewErrors, AskNothingOfTheHeap) {
   const ViewErrors errors(exact_scope(), {}, {});
   const Pose<M, C> X_MC;

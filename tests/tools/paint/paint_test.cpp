@@ -241,6 +241,25 @@ TEST_F(Paint, MapsWhatPaperModeCosts) {
   EXPECT_TRUE(std::filesystem::exists(path("difference.glb")));
 }
 
+TEST_F(Paint, MapsATurnedViewThroughTheLensAtItsTurn) {
+  // By half a turn the lens goes from 320 to the other side of 250 px.
+  scope_.turning = Turning{.centre_px = {250, 240}};
+  ASSERT_TRUE(write_scope(folder_ / "scope.toml", scope_));
+  const auto blue_at_430 = [&](const std::string& turn_rad) {
+    folder_.write("views.csv", "ramp.png,1,0,0,0,0,1,0,0,0,0,1,0," + turn_rad + "\n");
+    const Said said = run("painted.obj", {"--difference", path("difference.png")});
+    EXPECT_EQ(said.exit_code, 0) << said.err;
+    return int{read_picture(path("difference.png"))->rgba[4 * (240 * 640 + 430) + 2]};
+  };
+  EXPECT_LT(blue_at_430("0"), 60) << "yellow: on the plate, seen by a lens about 320";
+  EXPECT_EQ(blue_at_430("3.14159265"), 255) << "white: beside the plate, seen by a lens about 180";
+}
+
+TEST_F(Paint, RefusesATurnedViewThroughAPassportThatDoesNotTurn) {
+  folder_.write("views.csv", "ramp.png,1,0,0,0,0,1,0,0,0,0,1,0,0.5\n");
+  expect_refused("has no [turning]");
+}
+
 TEST_F(Paint, RefusesAMapOfAViewThatPaperModeHasNoScaleFor) {
   // The centre passes the plate's edge, which still is in the picture.
   folder_.write("views.csv", "ramp.png,1,0,0,12,0,1,0,0,0,0,1,0\n");

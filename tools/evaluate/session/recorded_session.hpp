@@ -29,7 +29,7 @@ class RecordedSession {
   double at_s(const StoredCapture& capture) const { return seconds(capture.exposure_start - started_at_); }
   /// The camera's own bytes.
   Result<StoredPicture> picture(const StoredCapture& capture) { return reader_.picture(capture.id); }
-  /// Its luma as grey. Refuses a picture that is not of the passport's size.
+  /// Its luma as grey, through scope(). Refuses a picture that is not of the passport's size.
   Result<TakenPicture> taken(const StoredCapture& capture);
 
  private:

@@ -8,6 +8,7 @@
 #include "tools/evaluate/marker_bodies.hpp"
 #include "tools/evaluate/pair_prediction.hpp"
 #include "tools/evaluate/stated_errors.hpp"
+#include "tools/evaluate/turned_scenes.hpp"
 
 namespace orcart {
 
@@ -22,6 +23,7 @@ std::string name_of(const StoredCapture& capture) {
 struct Earlier {
   const StoredCapture* capture;
   TakenPicture taken;
+  const TurnedScene* scene;
   Capture moving;
 };
 
@@ -47,6 +49,7 @@ std::vector<SessionGap> gaps_of(const RecordedSession& session, const std::vecto
 Result<void> compare_all(RecordedSession& session, const SessionCommand& command,
                          const EvaluationScene& scene, const EvaluateProgress& progress,
                          SessionReport& report) {
+  TurnedScenes turned(scene, report.model, session.registration());
   const ErrorModel& model = report.model;
   RandomStream random(command.seed, 4'000'000);
   const auto fiducials = fiducials_of_chance(scene, model.fiducials, random);
@@ -57,6 +60,8 @@ Result<void> compare_all(RecordedSession& session, const SessionCommand& command
     progress("comparing captures", static_cast<double>(i) / static_cast<double>(captures.size()));
     auto now = session.taken(captures[i]);
     if (!now) return tl::unexpected(now.error());
+    const TurnedScene& at = turned.at(captures[i].facts.turn_rad);
+    now->scope = &at.scope;
     const Capture moving{.X_MC = now->X_MC, .velocity = velocities[i]};
     for (const Earlier& before : earlier) {
       SessionPair pair{.pair = {.first = name_of(*before.capture),
@@ -68,11 +73,12 @@ Result<void> compare_all(RecordedSession& session, const SessionCommand& command
         ++(pair.pair.found.looked_at >= kSeenTogether ? report.unmatched : report.without_overlap);
         continue;
       }
-      pair.pair.predicted_mm =
-          predicted_apart_mm(scene, model, fiducials, pair.pair.found, before.moving, moving);
+      pair.pair.predicted_mm = predicted_apart_mm(fiducials, pair.pair.found,
+                                                  {before.scene->scene, before.scene->model, before.moving},
+                                                  {at.scene, at.model, moving});
       report.pairs.push_back(std::move(pair));
     }
-    earlier.push_back({.capture = &captures[i], .taken = *std::move(now), .moving = moving});
+    earlier.push_back({.capture = &captures[i], .taken = *std::move(now), .scene = &at, .moving = moving});
     if (earlier.size() > static_cast<std::size_t>(command.earlier)) earlier.pop_front();
   }
   report.gaps = gaps_of(session, report.pairs);
@@ -107,9 +113,9 @@ Result<SessionReport> evaluate_session(const SessionCommand& command, const Eval
   if (session->captures().size() < 2)
     return fail(command.session.string() + ": holds " + std::to_string(session->captures().size()) +
                 " captures that were not undone; two or more are accepted");
-  if (session->turned_on_the_way())
+  if (session->turned_on_the_way() && !session->scope().turning)
     return fail(command.session.string() +
-                ": the scope's light post was turned while it ran; captures at one turn are accepted");
+                ": the scope's light post was turned while it ran, but its passport has no [turning]");
   auto rays = RayScene::create(surface->mesh);
   if (!rays) return tl::unexpected(rays.error());
   auto scope_markers = markers_of_body(command.scope_rom),

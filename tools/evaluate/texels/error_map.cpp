@@ -22,7 +22,7 @@ Result<void> paint_all(OfflinePainter& painter, const std::vector<View>& views,
     progress("painting", static_cast<double>(i) / static_cast<double>(views.size()));
     auto picture = read_picture(views[i].image);
     if (!picture) return tl::unexpected(picture.error());
-    if (const auto painted = painter.paint(picture->descriptor(), views[i].X_MC); !painted)
+    if (const auto painted = painter.paint(picture->descriptor(), views[i].X_MC, views[i].turn_rad); !painted)
       return fail(views[i].image.string() + ": " + painted.error().message);
   }
   return {};
@@ -76,7 +76,8 @@ Result<ErrorMapReport> make_error_map(const ErrorMapCommand& command, const Eval
   if (!reference_markers) return tl::unexpected(reference_markers.error());
   const auto views = read_views(command.views);
   if (!views) return tl::unexpected(views.error());
-  if (auto still = check_still(views->views, command.views); !still) return tl::unexpected(still.error());
+  if (auto turns = check_turns(views->views, *scope, command.views); !turns)
+    return tl::unexpected(turns.error());
   auto rays = RayScene::create(surface->mesh);
   if (!rays) return tl::unexpected(rays.error());
   const EvaluationScene scene{.mesh = surface->mesh,
@@ -92,12 +93,16 @@ Result<ErrorMapReport> make_error_map(const ErrorMapCommand& command, const Eval
   if (auto painted = paint_all(*painter, views->views, progress); !painted)
     return tl::unexpected(painted.error());
   const AtlasRecords records = painter->painter().read_records();
-  const PaintedTexels painted{.layout = painter->layout(), .records = records, .views = views->views};
+  TurnedScenes scenes(scene, command.model, *registration);
+  const PaintedTexels painted{.layout = painter->layout(),
+                              .records = records,
+                              .views = views->views,
+                              .scenes = scenes_of(views->views, scenes)};
   RandomStream random(command.seed, 5'000'000);
   const auto fiducials = fiducials_of_chance(scene, command.model.fiducials, random);
   progress("predicting", 0);
   const ErrorModel model = with_stated(command.model, *scope, *registration);
-  const std::vector<float> rms_mm = predicted_rms_mm(scene, model, fiducials, painted);
+  const std::vector<float> rms_mm = predicted_rms_mm(fiducials, painted);
   ErrorMapReport report{
       .model = model, .out = command.out, .views = views->views.size(), .setups = command.setups};
   summarise(painter->layout(), rms_mm, report);
@@ -105,10 +110,12 @@ Result<ErrorMapReport> make_error_map(const ErrorMapCommand& command, const Eval
     return fail(command.out.string() + " is not written: none of the " + std::to_string(report.views) +
                 " views painted anything; check the poses and --seen-from");
   progress("checking by draws", 0.5);
-  report.drawn = drawn_coverage(scene, model, fiducials, painted, command.setups, random);
+  report.drawn = drawn_coverage(fiducials, painted, command.setups, random);
   const TexelValues shown{
       .layout = painter->layout(), .values = rms_mm, .darkest = ErrorMapReport::kDarkest_mm};
-  if (auto written = write_map(command.out, shown, *surface, scene, views->views.back().X_MC); !written)
+  if (auto written =
+          write_map(command.out, shown, *surface, painted.scenes.back()->scene, views->views.back().X_MC);
+      !written)
     return tl::unexpected(written.error());
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return report;

@@ -49,13 +49,24 @@ class SessionConsistency : public ::testing::Test {
     return X_MC;
   }
 
+  /// Its lens 40 px beside what the picture goes round.
+  ScopeModel angled() const {
+    ScopeModel scope = ball_.scope;
+    scope.turning = Turning{.centre_px = {290, 266},
+                            .axis = Eigen::Vector3d(0, 0.02, 1).normalized(),
+                            .axis_point_mm = {5, 0, 0}};
+    scope.turning->marker = TurnMarker::head;
+    return scope;
+  }
+
   /// Luma of mottled tissue, YUYV.
-  std::vector<std::byte> picture(const Pose<M, C>& X_MC) const {
+  std::vector<std::byte> picture(const Pose<M, C>& X_MC, double turn_rad) const {
+    const Lens lens = optics_at(ball_.scope, turn_rad).lens;
     std::vector<std::byte> bytes(packed_bytes(PixelFormat::yuyv, kWidth, kHeight), std::byte{128});
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
         int grey = 0;
-        if (const auto direction = direction_of(ball_.scope.lens, {x, y})) {
+        if (const auto direction = direction_of(lens, {x, y})) {
           const Eigen::Vector3f along = (X_MC.rotation * *direction).cast<float>(),
                                 from = X_MC.translation_mm.cast<float>();
           if (const auto hit = ball_.rays.nearest(from, along, 100))
@@ -88,7 +99,7 @@ class SessionConsistency : public ::testing::Test {
     CaptureSlots slots(2, packed_bytes(PixelFormat::yuyv, kWidth, kHeight));
     std::uint32_t unit = 0;
     for (const Taken& taken : all) {
-      auto bytes = picture(pose(taken.number));
+      auto bytes = picture(pose(taken.number), taken.turn_rad);
       CapturedFrame frame{.sequence = unit};
       frame.image = packed_image(bytes.data(), PixelFormat::yuyv, kWidth, kHeight);
       CaptureFacts facts{.unit = ++unit};
@@ -241,18 +252,40 @@ TEST_F(SessionConsistency, ASessionIsExportedAsFilesThatOtherVerbsRead) {
   EXPECT_EQ(registration->surface_hash, hash_);
 }
 
-TEST_F(SessionConsistency, AScopeThatTurnedIsExportedWithItsTurnsAndNotComparedThroughOneLens) {
-  const auto scope_file = folder_ / "scope.toml";
-  auto angled = read_scope(scope_file).value();
-  angled.turning = Turning{.centre_px = {150, 110}, .axis = {0, 0.6, 0.8}, .axis_point_mm = {5, 0, 0}};
-  angled.turning->marker = TurnMarker::head;
-  ASSERT_TRUE(write_scope(scope_file, angled));
-  const auto session = write_session({{.number = 0}, {.number = 1, .turn_rad = 0.5}});
-  const auto refused = evaluated(command(session));
+TEST_F(SessionConsistency, CapturesOfAScopeThatTurnsAreComparedEachThroughItsOwnLens) {
+  ball_.scope = angled();
+  ASSERT_TRUE(write_scope(folder_ / "scope.toml", ball_.scope));
+  const std::vector<Taken> turning{
+      {.number = 0}, {.number = 1, .turn_rad = 0.7}, {.number = 2, .turn_rad = -1.1}};
+  const auto report = evaluated(command(write_session(turning)));
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->unmatched, 0U);
+  ASSERT_GE(report->pairs.size(), 2U);
+  for (const SessionPair& pair : report->pairs) {
+    EXPECT_LT(pair.pair.found.median_mm, 0.1) << pair.pair.second;
+    EXPECT_GE(pair.pair.found.patches.size(), 5U) << pair.pair.second;
+  }
+  // A slip of 1.3 mm shows as it does through one lens.
+  auto slipped = turning;
+  slipped[2].wrong_mm = 1.3;
+  const auto apart = evaluated(command(write_session(slipped)));
+  ASSERT_TRUE(apart) << apart.error().message;
+  EXPECT_GE(apart->alarms(), 1U) << text_of(*apart);
+  EXPECT_FALSE(apart->pairs.front().pair.alarm());
+}
+
+TEST_F(SessionConsistency, TurnsThroughAPassportThatDoesNotTurnAreRefused) {
+  const auto refused = evaluated(command(write_session({{.number = 0}, {.number = 1, .turn_rad = 0.5}})));
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("turned while it ran"), std::string::npos)
       << refused.error().message;
+}
 
+TEST_F(SessionConsistency, AScopeThatTurnedIsExportedWithItsTurns) {
+  const auto scope_file = folder_ / "scope.toml";
+  const auto angled = this->angled();
+  ASSERT_TRUE(write_scope(scope_file, angled));
+  const auto session = write_session({{.number = 0}, {.number = 1, .turn_rad = 0.5}});
   const auto report =
       export_session({.session = session, .out = folder_ / "out"}, [](const std::string&, double) {});
   ASSERT_TRUE(report) << report.error().message;

@@ -23,9 +23,14 @@ class TexelErrors : public ::testing::Test {
                                    {.X_MR = ball_.scene().X_MR, .surface_hash = surface.identity.hash}));
     const std::vector<std::uint8_t> grey(640UL * 480 * 4, 128);
     ASSERT_TRUE(write_png(folder_ / "grey.png", 640, 480, grey));
+    write_views({0, 0, 0});
+  }
+
+  /// One view of chance for each turn.
+  void write_views(const std::vector<double>& turns_rad) {
     RandomStream random(7, 1);
-    std::string csv;
-    for (int i = 0; i < 3; ++i) {
+    std::string csv = "image,m00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23,turn_rad\n";
+    for (const double turn_rad : turns_rad) {
       const auto X = view_of_chance(ball_.scene(), random);
       ASSERT_TRUE(X);
       csv += "grey.png";
@@ -36,7 +41,7 @@ class TexelErrors : public ::testing::Test {
                         column < 3 ? X->rotation(row, column) : X->translation_mm[row]);
           csv += number;
         }
-      csv += "\n";
+      csv += "," + std::to_string(turn_rad) + "\n";
     }
     folder_.write("views.csv", csv);
   }
@@ -73,6 +78,36 @@ TEST_F(TexelErrors, TheirNinetyFivePercentHoldNinetyThreeToNinetySeven) {
   EXPECT_LT(report->rms_mm.mean, 2);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "map.ply"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "map.png"));
+}
+
+TEST_F(TexelErrors, OfAScopeThatTurnedHoldThemToo) {
+  // A lens well beside what it turns about, and a camera known a lot better along its x than along its y.
+  ball_.scope.turning =
+      Turning{.centre_px = {290, 260}, .marker = TurnMarker::head, .axis = {0, 0.5, std::sqrt(0.75)}};
+  ball_.scope.lens.cx_px = 335;
+  ball_.scope.hand_eye_covariance = TwistCovariance::Zero();
+  ball_.scope.hand_eye_covariance->diagonal() << 0.01, 0.25, 0.01, 1e-7, 1e-7, 1e-7;
+  ASSERT_TRUE(write_scope(folder_ / "scope.toml", ball_.scope));
+  write_views({0, 1.5, -2.2});
+  auto ask = command("map.ply");
+  ask.model.light_post_rad = 0.03;
+  const auto turned = made(ask);
+  ASSERT_TRUE(turned) << turned.error().message;
+  EXPECT_GE(turned->drawn.coverage.share(), 0.93);
+  EXPECT_LE(turned->drawn.coverage.share(), 0.97);
+  ::testing::Test::RecordProperty("coverage95", std::to_string(turned->drawn.coverage.share()));
+  EXPECT_NE(text_of(*turned).find("light post's turn 1.72 degrees"), std::string::npos) << text_of(*turned);
+  ask.model.light_post_rad = 1e-6;
+  const auto exact = made(ask);
+  ASSERT_TRUE(exact);
+  EXPECT_LT(exact->rms_mm.mean, 0.98 * turned->rms_mm.mean);
+}
+
+TEST_F(TexelErrors, OfTurnedViewsThroughAPassportThatDoesNotTurnAreRefused) {
+  write_views({0, 0.5, 0});
+  const auto refused = made(command("map.ply"));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("has no [turning]"), std::string::npos) << refused.error().message;
 }
 
 TEST_F(TexelErrors, GrowWithTheTrackersNoise) {
