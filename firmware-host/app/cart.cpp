@@ -99,7 +99,8 @@ Result<void> Cart::State::build_painting() {
                                        .policy = config.policy,
                                        .highlights = config.highlights,
                                        .light = config.light,
-                                       .picture_copy = imports ? PictureCopy::gpu : PictureCopy::cpu});
+                                       .picture_copy = imports ? PictureCopy::gpu : PictureCopy::cpu,
+                                       .paint_by = paint_by_for(context.render_class())});
   if (!made_painter) return tl::unexpected(made_painter.error());
   painter = std::make_unique<Painter>(std::move(*made_painter));
   auto made_screen = Screen::create(patient.surface, patient.layout, patient.scope,

@@ -30,7 +30,8 @@ Result<OfflinePainter> OfflinePainter::create(const Surface& surface, const Scop
                                  {.seen_from = options.seen_from,
                                   .policy = options.policy,
                                   .highlights = options.highlights,
-                                  .light = options.light});
+                                  .light = options.light,
+                                  .paint_by = paint_by_for(self.context_->render_class())});
   if (!painter) return tl::unexpected(painter.error());
   self.painter_ = std::make_unique<Painter>(std::move(*painter));
   return self;

@@ -1,12 +1,10 @@
 // Choices that hold for a whole procedure are compiled in; the rest are uniforms.
 #include "render/atlas/paint_program.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstddef>
 #include <string>
 
-#include "render/atlas/texel_record.hpp"
 #include "render/shaders/shaders.hpp"
 
 namespace orcart {
@@ -15,125 +13,110 @@ namespace {
 constexpr std::array<const char*, 7> kTextures{"u_points",   "u_depth", "u_owner", "u_triangles",
                                                "u_vertices", "u_mask",  "u_before"};
 
-int number_of(LensModel model) {
-  switch (model) {
-    case LensModel::brown:
-      return 0;
-    case LensModel::poly4:
-      return 1;
-    case LensModel::fisheye:
-      break;
+/// One of PaintUniforms.
+struct Number {
+  const char* name;
+  std::size_t offset_bytes;
+  std::size_t floats;
+};
+#define ORCART_NUMBER(name)                                                           \
+  Number {                                                                            \
+#name, offsetof(PaintUniforms, name), sizeof(PaintUniforms::name) / sizeof(float) \
   }
-  return 2;
+constexpr std::array kNumbers{
+    ORCART_NUMBER(u_intrinsics),    ORCART_NUMBER(u_coefficients),   ORCART_NUMBER(u_distortion_centre),
+    ORCART_NUMBER(u_circle),        ORCART_NUMBER(u_aspect),         ORCART_NUMBER(u_notch),
+    ORCART_NUMBER(u_rotation_CM),   ORCART_NUMBER(u_translation_CM), ORCART_NUMBER(u_facing),
+    ORCART_NUMBER(u_cos_cone),      ORCART_NUMBER(u_far_mm),         ORCART_NUMBER(u_cos_obliquity),
+    ORCART_NUMBER(u_depth_tangent), ORCART_NUMBER(u_depth_near),     ORCART_NUMBER(u_depth_far),
+    ORCART_NUMBER(u_depth_size),    ORCART_NUMBER(u_texel_mm),       ORCART_NUMBER(u_light),
+    ORCART_NUMBER(u_capture),       ORCART_NUMBER(u_view_error),     ORCART_NUMBER(u_pixel_rad),
+    ORCART_NUMBER(u_picture_size)};
+#undef ORCART_NUMBER
+constexpr std::size_t floats_of_all() {
+  std::size_t sum = 0;
+  for (const Number& number : kNumbers) sum += number.floats;
+  return sum;
 }
+static_assert(floats_of_all() == sizeof(PaintUniforms) / sizeof(float), "a number is missing in the list");
 
 std::string choice(const char* name, bool chosen) {
-  return std::string("#define ") + name + (chosen ? " 1\n" : " 0\n");
+  return std::string("#define ") + name + (chosen ? " true\n" : " false\n");
 }
 
-std::string fragment_source(const ScopeModel& scope, const PainterSettings& settings, TextureMode mode) {
-  std::string source = "#define LENS_MODEL " + std::to_string(number_of(scope.lens.model)) + "\n";
-  source += choice("BEST", settings.policy == PaintPolicy::best);
-  source += choice("YIELD", settings.highlights == Highlights::yield);
-  source += choice("LIGHT", settings.light != LightModel::as_seen);
-  source += shaders::lens_glsl;
-  source += shaders::picture_glsl;
-  source += shaders::mask_glsl;
-  source += shaders::record_glsl;
-  source += shaders::light_glsl;
-  source += mode == TextureMode::paper ? shaders::paint_paper_frag : shaders::paint_frag;
-  return source;
+std::string fragment_source(TextureMode mode, const PaintChoices& choices) {
+  std::string source = "#define LENS_MODEL " + std::to_string(choices.lens_model) + "\n";
+  source += choice("BEST", choices.best);
+  source += choice("YIELD", choices.yield);
+  source += choice("LIGHT", choices.light);
+  for (const char* part :
+       {shaders::dialect_glsl, shaders::paint_uniforms_glsl, shaders::picture_textures_glsl,
+        shaders::paint_textures_glsl, shaders::lens_glsl, shaders::picture_glsl, shaders::mask_glsl,
+        shaders::record_glsl, shaders::light_glsl}) {
+    source += part;
+  }
+  if (mode == TextureMode::paper) return source + shaders::paint_paper_frag;
+  return source + shaders::visible_glsl + shaders::paint_texel_glsl + shaders::paint_frag;
 }
 
 }  // namespace
 
-Result<PaintProgram> PaintProgram::create(const ScopeModel& scope, const PainterSettings& settings,
-                                          const PaintConstants& constants) {
+Result<PaintProgram> PaintProgram::create(TextureMode mode, const PaintChoices& choices,
+                                          int atlas_size_texels) {
   PaintProgram self;
-  const char* name = constants.mode == TextureMode::paper ? "paint_paper" : "paint";
-  auto made = gles::make_program(name, shaders::paint_vert, fragment_source(scope, settings, constants.mode));
+  const char* name = mode == TextureMode::paper ? "paint_paper" : "paint";
+  auto made = gles::make_program(name, shaders::paint_vert, fragment_source(mode, choices));
   if (!made) return tl::unexpected(made.error());
   self.program_ = std::move(*made);
   glUseProgram(self.program_.id());
-  self.set_constants(scope, settings, constants);
   const auto at = [&](const char* uniform) { return gles::uniform(self.program_, uniform); };
   for (GLint i = 0; i < static_cast<GLint>(kTextures.size()); ++i)
     glUniform1i(at(kTextures[static_cast<std::size_t>(i)]), i);
-  self.rotation_ = at("u_rotation_CM");
-  self.translation_ = at("u_translation_CM");
+  glUniform1f(at("u_atlas_size"), static_cast<float>(atlas_size_texels));
+  for (const Number& number : kNumbers) self.numbers_.push_back(at(number.name));
   self.tip_ = at("u_tip");
   self.view_ = at("u_view");
   self.up_ = at("u_up");
   self.side_ = at("u_side");
   self.paper_size_ = at("u_paper_size");
   self.half_width_slope_ = at("u_half_width_slope");
-  self.capture_ = at("u_capture");
-  self.view_error_ = at("u_view_error");
-  self.light_ = at("u_light");
-  self.intrinsics_ = at("u_intrinsics");
-  self.coefficients_ = at("u_coefficients");
-  self.distortion_centre_ = at("u_distortion_centre");
-  self.circle_ = at("u_circle");
-  self.notch_ = at("u_notch");
   self.picture_ = gles::PictureTexture::uniforms_of(self.program_);
   return self;
 }
 
-void PaintProgram::set_constants(const ScopeModel& scope, const PainterSettings& settings,
-                                 const PaintConstants& constants) {
-  const auto set = [&](const char* name, auto... values) {
-    const GLint at = gles::uniform(program_, name);
-    if constexpr (sizeof...(values) == 1) glUniform1f(at, static_cast<float>(values)...);
-    if constexpr (sizeof...(values) == 2) glUniform2f(at, static_cast<float>(values)...);
-    if constexpr (sizeof...(values) == 4) glUniform4f(at, static_cast<float>(values)...);
-  };
-  const Lens& lens = scope.lens;
-  set("u_aspect", lens.fx_px / lens.fy_px);
-  set("u_pixel_rad", 1.0 / lens.fx_px);
-  set("u_atlas_size", constants.atlas_size_texels);
-  set("u_texel_mm", constants.texel_mm);
-  set("u_facing", settings.seen_from == SeenFrom::outside ? 1 : -1);
-  set("u_cos_cone", std::cos(std::min(scope.cone_half_angle_rad, lens.max_angle_rad)));
-  set("u_far_mm", scope.far_mm);
-  set("u_cos_obliquity", std::cos(settings.max_obliquity_rad));
-  set("u_depth_tangent", constants.pinhole.tangent);
-  set("u_depth_near", constants.pinhole.near_mm);
-  set("u_depth_far", constants.pinhole.far_mm);
-  fall_off_ = {static_cast<float>(scope.fall_off.reference_mm),
-               static_cast<float>(scope.fall_off.vignetting_cos_power)};
-}
-
-void PaintProgram::set_optics(const TurnedOptics& optics) const noexcept {
-  const auto narrow = [](double value) { return static_cast<float>(value); };
-  const Lens& lens = optics.lens;
-  glUniform4f(intrinsics_, narrow(lens.fx_px), narrow(lens.fy_px), narrow(lens.cx_px), narrow(lens.cy_px));
-  std::array<float, 5> coefficients{};
-  std::transform(lens.coefficients.begin(), lens.coefficients.end(), coefficients.begin(), narrow);
-  glUniform1fv(coefficients_, 5, coefficients.data());
-  glUniform2f(distortion_centre_, narrow(lens.distortion_centre_px.x()),
-              narrow(lens.distortion_centre_px.y()));
-  const CircularMask& mask = optics.mask;
-  glUniform4f(circle_, narrow(mask.cx_px), narrow(mask.cy_px), narrow(mask.radius_px),
-              narrow(std::max(mask.soft_edge_px, 1e-3)));
-  const bool notched = optics.notch_rad.has_value();
-  glUniform2f(notch_, notched ? narrow(std::cos(*optics.notch_rad)) : 0,
-              notched ? narrow(std::sin(*optics.notch_rad)) : 0);
+void PaintProgram::set_numbers(const PaintUniforms& uniforms) const noexcept {
+  for (std::size_t i = 0; i < kNumbers.size(); ++i) {
+    const auto* from = reinterpret_cast<const float*>(reinterpret_cast<const std::byte*>(&uniforms) +
+                                                      kNumbers[i].offset_bytes);
+    switch (kNumbers[i].floats) {
+      case 2:
+        glUniform2fv(numbers_[i], 1, from);
+        break;
+      case 3:
+        glUniform3fv(numbers_[i], 1, from);
+        break;
+      case 4:
+        glUniform4fv(numbers_[i], 1, from);
+        break;
+      case 9:
+        glUniformMatrix3fv(numbers_[i], 1, GL_FALSE, from);
+        break;
+      default:
+        glUniform1fv(numbers_[i], static_cast<GLsizei>(kNumbers[i].floats), from);
+    }
+  }
 }
 
 void PaintProgram::use(const PaintView& view, const SurfaceTextures& surface,
                        const gles::PictureTexture& picture) const noexcept {
   glUseProgram(program_.id());
-  set_optics(view.optics);
-  set_pose_uniforms(rotation_, translation_, view.X_CM);
+  set_numbers(view.uniforms);
   glUniform3fv(tip_, 1, view.paper.tip_mm.data());
   glUniform3fv(view_, 1, view.paper.view.data());
   glUniform3fv(up_, 1, view.paper.up.data());
   glUniform3fv(side_, 1, view.paper.side.data());
   glUniform2f(paper_size_, view.paper.s_size_mm, view.paper.t_size_mm);
   glUniform1f(half_width_slope_, view.paper.half_width_slope);
-  glUniform1ui(capture_, capture_number(view.unit));
-  glUniform3f(view_error_, view.error.position_mm, view.error.angle_rad, view.error.pixels);
-  glUniform3f(light_, fall_off_.x(), fall_off_.y(), view.mean_light);
   const std::array<GLuint, kTextures.size()> textures{
       surface.points.id(),   view.depth_texture, surface.owner.id(), surface.triangles.id(),
       surface.vertices.id(), view.mask_texture,  view.before_texture};

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "realtime/geometry/triangle_mesh.hpp"
+#include "render/egl/context.hpp"
 #include "render/gles/picture_copy.hpp"
 
 namespace orcart {
@@ -28,6 +29,17 @@ enum class LightModel : std::uint8_t {
                    ///< picture
 };
 
+/// Who goes through the texels. Both by the same rules, to within a level of a colour.
+enum class PaintBy : std::uint8_t {
+  gpu,        ///< the driver
+  processor,  ///< the processor's vector units, where the driver would be a slower program on the same
+              ///< processor; in the paper's mode the driver all the same
+};
+
+constexpr PaintBy paint_by_for(RenderClass driver) noexcept {
+  return driver == RenderClass::software ? PaintBy::processor : PaintBy::gpu;
+}
+
 struct PainterSettings {
   SeenFrom seen_from = SeenFrom::outside;
   int undo_units = 16;                            ///< how many units can be taken back
@@ -36,7 +48,8 @@ struct PainterSettings {
   PaintPolicy policy = PaintPolicy::newest;
   Highlights highlights = Highlights::keep;
   LightModel light = LightModel::as_seen;
-  PictureCopy picture_copy = PictureCopy::cpu;
+  PictureCopy picture_copy = PictureCopy::cpu;  ///< cpu where the processor paints
+  PaintBy paint_by = PaintBy::gpu;
 };
 
 /// What a view's pose and calibration leave open, each as RMS over both axes across the line of sight. The

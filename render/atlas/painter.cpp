@@ -9,7 +9,9 @@
 #include "render/atlas/coverage_counter.hpp"
 #include "render/atlas/paint_program.hpp"
 #include "render/atlas/scope_depth.hpp"
+#include "render/atlas/software/processor_texels.hpp"
 #include "render/atlas/surface_textures.hpp"
+#include "render/atlas/touched_cells.hpp"
 #include "render/atlas/undo_store.hpp"
 #include "render/atlas/view_light.hpp"
 #include "render/gles/picture_texture.hpp"
@@ -17,10 +19,8 @@
 namespace orcart {
 namespace {
 
-constexpr int kMaskRow = 2048;   // words in a row of the paper mode's triangle mask
-constexpr int kCellTexels = 16;  // what is painted is drawn in squares of this size
+constexpr int kMaskRow = 2048;  // words in a row of the paper mode's triangle mask
 const Eigen::AlignedBox3f kEverything(Eigen::Vector3f::Constant(-1e9F), Eigen::Vector3f::Constant(1e9F));
-static_assert(kTileTexels % kCellTexels == 0);
 
 /// Half again as fine as a small picture, about as fine as one of 1080 rows; in steps of 64.
 int depth_size_for(const ScopeModel& scope) {
@@ -35,10 +35,12 @@ struct Painter::State {
   ScopeModel scope;
   PainterSettings settings;
   SurfaceTextures surface;
-  std::vector<ScopeDepth> depth;              ///< exactly one
-  std::vector<UndoStore> undo;                ///< exactly one
-  std::vector<CoverageCounter> coverage;      ///< exactly one
-  std::vector<gles::PictureTexture> picture;  ///< exactly one
+  std::vector<ScopeDepth> depth;                  ///< exactly one
+  std::vector<UndoStore> undo;                    ///< exactly one
+  std::vector<CoverageCounter> coverage;          ///< exactly one
+  std::vector<gles::PictureTexture> picture;      ///< exactly one
+  std::vector<TouchedCells> touched_cells;        ///< exactly one
+  std::unique_ptr<ProcessorTexels> by_processor;  ///< where the processor paints
   gles::Texture atlas, records, mask;
   gles::Framebuffer atlas_framebuffer, record_framebuffer;  ///< each alone
   gles::Framebuffer both;                                   ///< what is painted into
@@ -46,17 +48,13 @@ struct Painter::State {
   gles::VertexArray vertex_array;
   gles::Buffer rects;
 
-  std::vector<std::uint32_t> seen_cell, seen_tile;  ///< epoch of the view, or step, that touched it last
-  std::uint32_t epoch = 0, cells_per_row = 0;
-  std::vector<std::uint32_t> cells;  ///< of the view, in order; painted up to `painted`
-  std::size_t painted = 0;
-  std::vector<std::uint32_t> tiles;
   std::vector<ChartRect> quads;
   std::vector<std::uint32_t> mask_words;
   const TriangleMesh* mesh = nullptr;
   std::array<Eigen::AlignedBox3f, 16> touched{};  ///< by change number, modulo
   std::uint64_t changes = 0;
   Eigen::AlignedBox3f view_box;  ///< of the view's triangles
+  std::uint32_t unit = 0;        ///< of the view
   PaintView view;
   TextureMode mode = TextureMode::perspective;
   ViewLight light;
@@ -69,31 +67,36 @@ struct Painter::State {
   Result<void> make_programs();
   Result<void> make_atlas(const Surface& surface);
   Result<void> make_targets();
+  void make_picture();
   void wipe() noexcept;
-  void collect(const CutoutPatch& patch) noexcept;
-  void collect_cells(std::uint32_t triangle) noexcept;
-  void collect_tile(std::uint32_t cell) noexcept;
+  void collect(const CutoutPatch& patch, const Pose<C, M>& X_CM) noexcept;
   PaintReport paint_some() noexcept;
+  void paint_by_gpu(std::span<const std::uint32_t> cells) noexcept;
+  void changed(std::span<const std::uint32_t> tiles) noexcept;
+  bool processor_paints() const noexcept { return by_processor && mode == TextureMode::perspective; }
   void note_change(const Eigen::AlignedBox3f& box) noexcept { touched[++changes % touched.size()] = box; }
 };
 
 Result<void> Painter::State::make_programs() {
+  const PaintChoices choices = choices_of(scope, settings);
   for (const TextureMode each : {TextureMode::perspective, TextureMode::paper}) {
-    auto made = PaintProgram::create(scope, settings,
-                                     {.mode = each,
-                                      .atlas_size_texels = layout->width_texels,
-                                      .texel_mm = layout->texel_mm,
-                                      .pinhole = depth[0].pinhole()});
+    auto made = PaintProgram::create(each, choices, layout->width_texels);
     if (!made) return tl::unexpected(made.error());
     programs.push_back(std::move(*made));
   }
   view.depth_texture = depth[0].texture();
   view.mask_texture = mask.id();
   view.before_texture = undo[0].before_texture();
-  view.optics = optics_at(scope, 0);
-  view.error = {.position_mm = static_cast<float>(scope.residual_mm),
-                .pixels = static_cast<float>(scope.residual_px)};
+  view.uniforms = uniforms_of(scope, settings, layout->texel_mm, depth[0].pinhole());
   return {};
+}
+
+void Painter::State::make_picture() {
+  using Keeps = gles::PicturePyramid::Keeps;
+  const PictureCopy copy = by_processor ? PictureCopy::cpu : settings.picture_copy;
+  picture.clear();
+  picture.emplace_back(scope.width_px, scope.height_px, copy,
+                       by_processor ? Keeps::all_levels : Keeps::coarser_levels);
 }
 
 Result<void> Painter::State::make_targets() {
@@ -126,8 +129,12 @@ void Painter::State::wipe() noexcept {
 }
 
 Result<void> Painter::State::make_atlas(const Surface& from) {
-  surface = make_surface_textures(from.mesh, *layout);
+  const std::vector<float> points = texel_points(from.mesh, *layout);
+  surface = make_surface_textures(from.mesh, *layout, points);
   if (auto made = make_targets(); !made) return made;
+  if (settings.paint_by == PaintBy::processor)
+    by_processor = std::make_unique<ProcessorTexels>(from.mesh, kept(), depth[0].pinhole(),
+                                                     choices_of(scope, settings), points);
   const std::size_t words = (from.mesh.triangles.size() + 31) / 32;
   const int rows = static_cast<int>((words + kMaskRow - 1) / kMaskRow);
   mask_words.assign(static_cast<std::size_t>(rows) * kMaskRow, 0);
@@ -135,21 +142,15 @@ Result<void> Painter::State::make_atlas(const Surface& from) {
 
   vertex_array = gles::make_vertex_array();
   glBindVertexArray(vertex_array.id());
-  cells_per_row = static_cast<std::uint32_t>(layout->width_texels / kCellTexels);
-  const std::size_t cell_count = static_cast<std::size_t>(cells_per_row) * cells_per_row;
+  touched_cells.emplace_back(*layout);
+  const std::size_t cell_count = touched_cells[0].most_cells();
   rects = gles::make_buffer(GL_ARRAY_BUFFER, cell_count * sizeof(ChartRect), nullptr, GL_STREAM_DRAW);
   glEnableVertexAttribArray(0);
   glVertexAttribPointer(0, 4, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(ChartRect), nullptr);
   glVertexAttribDivisor(0, 1);
   glBindVertexArray(0);
 
-  const std::size_t tile_count = static_cast<std::size_t>(layout->width_texels / kTileTexels) *
-                                 static_cast<std::size_t>(layout->height_texels / kTileTexels);
-  seen_cell.assign(cell_count, 0);
-  seen_tile.assign(tile_count, 0);
-  cells.reserve(cell_count);
   quads.reserve(cell_count);
-  tiles.reserve(tile_count);
   auto store = UndoStore::create(kept(), settings.undo_units);
   if (!store) return tl::unexpected(store.error());
   undo.push_back(std::move(*store));
@@ -178,8 +179,8 @@ Result<Painter> Painter::create(const Surface& surface, const AtlasLayout& layou
   auto depth = ScopeDepth::create(surface.mesh, pinhole);
   if (!depth) return tl::unexpected(depth.error());
   state->depth.push_back(std::move(*depth));
-  state->picture.emplace_back(scope.width_px, scope.height_px, settings.picture_copy);
   if (auto made = state->make_atlas(surface); !made) return tl::unexpected(made.error());
+  state->make_picture();
   if (auto made = state->make_programs(); !made) return tl::unexpected(made.error());
   Painter painter(std::move(state));
   painter.warm_up();
@@ -202,8 +203,7 @@ void Painter::warm_up() {
   undo();
   coverage();
   clear();
-  s.picture.clear();
-  s.picture.emplace_back(width, height, s.settings.picture_copy);
+  s.make_picture();
 }
 
 Painter::Painter(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -215,45 +215,11 @@ bool Painter::upload(const ImageDescriptor& image) noexcept {
   return state_->picture[0].upload(image);
 }
 
-/// The cells that hold a triangle's own texels and its gutter.
-void Painter::State::collect_cells(std::uint32_t triangle) noexcept {
-  constexpr float kGutter = 3;
-  const auto& corners = layout->corners_texels[triangle];
-  const ChartRect& rect = layout->charts[layout->chart_of_triangle[triangle]];
-  const auto cell = [&](float texel, int first, int extent) {
-    return static_cast<std::uint32_t>(std::clamp(static_cast<int>(texel), first, first + extent - 1)) /
-           kCellTexels;
-  };
-  const Eigen::Vector2f low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]).array() - kGutter;
-  const Eigen::Vector2f high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]).array() + kGutter;
-  const std::uint32_t x0 = cell(low.x(), rect.x, rect.width), x1 = cell(high.x(), rect.x, rect.width);
-  const std::uint32_t y0 = cell(low.y(), rect.y, rect.height), y1 = cell(high.y(), rect.y, rect.height);
-  for (std::uint32_t y = y0; y <= y1; ++y) {  // bound: a chart's extent
-    for (std::uint32_t x = x0; x <= x1; ++x) {
-      const std::uint32_t number = y * cells_per_row + x;
-      if (seen_cell[number] == epoch) continue;
-      seen_cell[number] = epoch;
-      cells.push_back(number);
-    }
-  }
-}
-
-void Painter::State::collect_tile(std::uint32_t cell) noexcept {
-  constexpr std::uint32_t kCellsPerTile = kTileTexels / kCellTexels;
-  const std::uint32_t tile = cell / cells_per_row / kCellsPerTile * (cells_per_row / kCellsPerTile) +
-                             cell % cells_per_row / kCellsPerTile;
-  if (seen_tile[tile] == epoch) return;
-  seen_tile[tile] = epoch;
-  tiles.push_back(tile);
-}
-
-void Painter::State::collect(const CutoutPatch& patch) noexcept {
+void Painter::State::collect(const CutoutPatch& patch, const Pose<C, M>& X_CM) noexcept {
   if (patch.first_part) {
-    ++epoch;
-    cells.clear();
-    painted = 0;
+    touched_cells[0].begin();
     view_box.setEmpty();
-    view.X_CM = patch.X_MC.inverse();
+    set_pose(view.uniforms, X_CM);
     mode = patch.mode;
     view.paper = patch.paper;
     light.begin(patch.X_MC, scope);
@@ -262,7 +228,7 @@ void Painter::State::collect(const CutoutPatch& patch) noexcept {
   if (settings.light == LightModel::auto_exposure) light.add(*mesh, patch.triangles);
   for (const std::uint32_t triangle : patch.triangles) {
     if (mode == TextureMode::paper) mask_words[triangle >> 5] |= 1u << (triangle & 31);
-    collect_cells(triangle);
+    touched_cells[0].add(triangle);
     for (const std::uint32_t corner : mesh->triangles[triangle]) view_box.extend(mesh->vertices_mm[corner]);
   }
 }
@@ -270,11 +236,16 @@ void Painter::State::collect(const CutoutPatch& patch) noexcept {
 PaintReport Painter::paint(const CutoutPatch& patch, std::uint32_t unit) noexcept {
   State& s = *state_;
   if (s.picture[0].empty() || (patch.mode == TextureMode::paper && !patch.paper.valid)) return {};
-  s.collect(patch);
-  s.view.unit = unit;
-  if (patch.mode == TextureMode::perspective) s.depth[0].draw(patch, s.view.X_CM);
+  const Pose<C, M> X_CM = patch.X_MC.inverse();
+  s.collect(patch, X_CM);
+  s.unit = unit;
+  s.view.uniforms.u_capture = static_cast<float>(capture_number(unit));
+  if (s.processor_paints())
+    s.by_processor->see(patch, X_CM);
+  else if (patch.mode == TextureMode::perspective)
+    s.depth[0].draw(patch, X_CM);
   if (!patch.last_part) return {};
-  s.view.mean_light = s.settings.light == LightModel::auto_exposure ? s.light.mean() : 1;
+  s.view.uniforms.u_light.z = s.settings.light == LightModel::auto_exposure ? s.light.mean() : 1.0F;
   if (s.mode == TextureMode::paper) {
     glBindTexture(GL_TEXTURE_2D, s.mask.id());
     glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kMaskRow, static_cast<GLsizei>(s.mask_words.size() / kMaskRow),
@@ -288,26 +259,39 @@ PaintReport Painter::paint_more() noexcept {
 }
 
 PaintReport Painter::State::paint_some() noexcept {
-  PaintReport report;
+  TouchedCells& touches = touched_cells[0];
+  const std::span<const std::uint32_t> cells = touches.next(settings.max_texels_per_step);
+  const PaintReport report{.painted = !cells.empty(),
+                           .carried = touches.more(),
+                           .texels = static_cast<std::uint32_t>(cells.size() * kCellTexels * kCellTexels)};
+  if (!report.painted) return report;
+  note_change(view_box);
+  undo[0].keep(unit, touches.tiles());
+  if (processor_paints()) {
+    by_processor->paint(cells, touches.tiles(), view.uniforms, picture[0].in_memory());
+    coverage[0].touch(touches.tiles());
+  } else {
+    undo[0].show_before(touches.tiles());
+    paint_by_gpu(cells);
+    changed(touches.tiles());
+  }
+  return report;
+}
+
+/// Other than by the processor's painting.
+void Painter::State::changed(std::span<const std::uint32_t> tiles) noexcept {
+  coverage[0].touch(tiles);
+  if (by_processor) by_processor->forget(tiles);
+}
+
+void Painter::State::paint_by_gpu(std::span<const std::uint32_t> cells) noexcept {
+  const std::uint32_t cells_per_row = touched_cells[0].cells_per_row();
   quads.clear();
-  tiles.clear();
-  ++epoch;  // tiles are told apart from those of the step before
-  constexpr std::uint32_t kTexelsOfCell = kCellTexels * kCellTexels;
-  for (; painted < cells.size() && report.texels + kTexelsOfCell <= settings.max_texels_per_step; ++painted) {
-    const std::uint32_t cell = cells[painted];
-    report.texels += kTexelsOfCell;
+  for (const std::uint32_t cell : cells) {
     quads.push_back({static_cast<std::uint16_t>(cell % cells_per_row * kCellTexels),
                      static_cast<std::uint16_t>(cell / cells_per_row * kCellTexels), kCellTexels,
                      kCellTexels});
-    collect_tile(cell);
   }
-  report.painted = !quads.empty();
-  report.carried = painted < cells.size();
-  if (!report.painted) return report;
-  note_change(view_box);
-  undo[0].keep(view.unit, tiles);
-  coverage[0].touch(tiles);
-  undo[0].show_before(tiles);
   glBindFramebuffer(GL_FRAMEBUFFER, both.id());
   glViewport(0, 0, layout->width_texels, layout->height_texels);
   glEnable(GL_BLEND);  // colours alone: records are integers
@@ -320,26 +304,26 @@ PaintReport Painter::State::paint_some() noexcept {
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(quads.size()));
   glBindVertexArray(0);
   glDisable(GL_BLEND);
-  return report;
 }
 
 bool Painter::undo() noexcept {
   state_->note_change(kEverything);
   const auto tiles = state_->undo[0].undo();
-  state_->coverage[0].touch(tiles);
+  state_->changed(tiles);
   return !tiles.empty();
 }
 
 bool Painter::redo() noexcept {
   state_->note_change(kEverything);
   const auto tiles = state_->undo[0].redo();
-  state_->coverage[0].touch(tiles);
+  state_->changed(tiles);
   return !tiles.empty();
 }
 
 void Painter::clear() noexcept {
   state_->note_change(kEverything);
   state_->wipe();
+  if (state_->by_processor) state_->by_processor->clear();
   state_->undo[0].forget_all();
   state_->coverage[0].touch_all();
 }
@@ -379,11 +363,11 @@ AtlasRecords Painter::read_records() const {
 }
 
 void Painter::set_turn(double turn_rad) noexcept {
-  state_->view.optics = optics_at(state_->scope, turn_rad);
+  set_optics(state_->view.uniforms, optics_at(state_->scope, turn_rad));
 }
 
 void Painter::set_view_error(const ViewError& error) noexcept {
-  state_->view.error = error;
+  state_->view.uniforms.u_view_error = {error.position_mm, error.angle_rad, error.pixels};
 }
 
 std::uint64_t Painter::changes() const noexcept {

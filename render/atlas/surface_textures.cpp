@@ -46,25 +46,6 @@ Eigen::Vector3f nearest_on(const std::array<Eigen::Vector3f, 3>& corners, const 
   return nearest;
 }
 
-gles::Texture point_texture(const TriangleMesh& mesh, const AtlasLayout& layout) {
-  std::vector<float> points(layout.owners.size() * 4, kNowhere_mm);
-  for (std::size_t i = 0; i < layout.owners.size(); ++i) {
-    const TexelOwner& owner = layout.owners[i];
-    if (owner.triangle == 0xFFFFFFFF) continue;
-    const auto& corners = mesh.triangles[owner.triangle];
-    const Eigen::Vector3f a = mesh.vertices_mm[corners[0]], ab = mesh.vertices_mm[corners[1]] - a,
-                          ac = mesh.vertices_mm[corners[2]] - a;
-    Eigen::Vector3f p = a + owner.b1 * ab + owner.b2 * ac;
-    if (layout.inside[i] == 0) p = nearest_on({a, a + ab, a + ac}, p);
-    std::copy_n(p.data(), 3, &points[4 * i]);
-    points[4 * i + 3] = pack_normal(ab.cross(ac).normalized());
-  }
-  auto texture = gles::make_texture({GL_RGBA32F, layout.width_texels, layout.height_texels});
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, layout.width_texels, layout.height_texels, GL_RGBA, GL_FLOAT,
-                  points.data());
-  return texture;
-}
-
 }  // namespace
 
 float pack_normal(const Eigen::Vector3f& normal) {
@@ -80,8 +61,29 @@ float pack_normal(const Eigen::Vector3f& normal) {
   return std::round((u * 0.5f + 0.5f) * 2047) * 2048 + std::round((v * 0.5f + 0.5f) * 2047);
 }
 
-SurfaceTextures make_surface_textures(const TriangleMesh& mesh, const AtlasLayout& layout) {
-  SurfaceTextures textures{.owner = owner_texture(layout), .points = point_texture(mesh, layout)};
+std::vector<float> texel_points(const TriangleMesh& mesh, const AtlasLayout& layout) {
+  std::vector<float> points(layout.owners.size() * 4, kNowhere_mm);
+  for (std::size_t i = 0; i < layout.owners.size(); ++i) {
+    const TexelOwner& owner = layout.owners[i];
+    if (owner.triangle == 0xFFFFFFFF) continue;
+    const auto& corners = mesh.triangles[owner.triangle];
+    const Eigen::Vector3f a = mesh.vertices_mm[corners[0]], ab = mesh.vertices_mm[corners[1]] - a,
+                          ac = mesh.vertices_mm[corners[2]] - a;
+    Eigen::Vector3f p = a + owner.b1 * ab + owner.b2 * ac;
+    if (layout.inside[i] == 0) p = nearest_on({a, a + ab, a + ac}, p);
+    std::copy_n(p.data(), 3, &points[4 * i]);
+    points[4 * i + 3] = pack_normal(ab.cross(ac).normalized());
+  }
+  return points;
+}
+
+SurfaceTextures make_surface_textures(const TriangleMesh& mesh, const AtlasLayout& layout,
+                                      const std::vector<float>& points) {
+  SurfaceTextures textures{
+      .owner = owner_texture(layout),
+      .points = gles::make_texture({GL_RGBA32F, layout.width_texels, layout.height_texels})};
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, layout.width_texels, layout.height_texels, GL_RGBA, GL_FLOAT,
+                  points.data());
 
   const int triangle_rows = rows_for(mesh.triangles.size());
   std::vector<std::uint32_t> corners(static_cast<std::size_t>(triangle_rows) * kRow * 4, 0);

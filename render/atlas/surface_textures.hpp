@@ -1,6 +1,8 @@
 // The surface and its atlas layout as textures, so that the paint shader finds the point behind every texel.
 #pragma once
 
+#include <vector>
+
 #include "realtime/geometry/triangle_mesh.hpp"
 #include "render/atlas/atlas_layout.hpp"
 #include "render/gles/objects.hpp"
@@ -21,6 +23,10 @@ struct SurfaceTextures {
 /// degrees.
 float pack_normal(const Eigen::Vector3f& normal);
 
-SurfaceTextures make_surface_textures(const TriangleMesh& mesh, const AtlasLayout& layout);
+/// Of every texel, what SurfaceTextures::points holds.
+std::vector<float> texel_points(const TriangleMesh& mesh, const AtlasLayout& layout);
+
+SurfaceTextures make_surface_textures(const TriangleMesh& mesh, const AtlasLayout& layout,
+                                      const std::vector<float>& points);
 
 }  // namespace orcart

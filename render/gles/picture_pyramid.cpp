@@ -1,6 +1,8 @@
 // Rows of means as vector code, chosen for the processor when first run (Highway).
 #include "render/gles/picture_pyramid.hpp"
 
+#include <cstring>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/gles/picture_pyramid.cpp"
 #include <hwy/foreach_target.h>
@@ -80,19 +82,32 @@ int exact_halvings(int width, int height, int most) noexcept {
   return halvings;
 }
 
-PicturePyramid::PicturePyramid(int width, int height, int channels, int levels)
-    : width_(width), height_(height), channels_(channels) {
-  for (int level = 1; level <= levels; ++level)
-    levels_.emplace_back(static_cast<std::size_t>(width >> level) *
-                         static_cast<std::size_t>(height >> level) * static_cast<std::size_t>(channels));
+PicturePyramid::PicturePyramid(int width, int height, int channels, int levels, Keeps keeps)
+    : in_memory_{.width = width, .height = height, .channels = channels, .count = 1 + levels}, keeps_(keeps) {
+  constexpr std::size_t kReadBeyond = 4;
+  std::size_t end = 0;
+  for (int level = keeps == Keeps::all_levels ? 0 : 1; level <= levels; ++level) {
+    in_memory_.offset_bytes[static_cast<std::size_t>(level)] = static_cast<std::int32_t>(end);
+    end += static_cast<std::size_t>(width >> level) * static_cast<std::size_t>(height >> level) *
+           static_cast<std::size_t>(channels);
+  }
+  bytes_.resize(end + kReadBeyond);
 }
 
 void PicturePyramid::build(const PlaneView& plane) noexcept {
+  const int channels = in_memory_.channels;
   PlaneView from = plane;
-  for (std::vector<std::uint8_t>& to : levels_) {
-    HWY_DYNAMIC_DISPATCH(halve)(from, channels_, to.data());
+  if (keeps_ == Keeps::all_levels) {
+    const auto row_bytes = static_cast<std::size_t>(plane.width) * static_cast<std::size_t>(channels);
+    for (int y = 0; y < plane.height; ++y)
+      std::memcpy(bytes_.data() + static_cast<std::size_t>(y) * row_bytes,
+                  plane.data + static_cast<std::size_t>(y) * plane.stride_bytes, row_bytes);
+  }
+  for (int number = 1; number <= levels(); ++number) {
+    std::uint8_t* to = bytes_.data() + in_memory_.offset_bytes[static_cast<std::size_t>(number)];
+    HWY_DYNAMIC_DISPATCH(halve)(from, channels, to);
     const int width = from.width / 2;
-    from = {to.data(), static_cast<std::size_t>(width * channels_), width, from.height / 2};
+    from = {to, static_cast<std::size_t>(width * channels), width, from.height / 2};
   }
 }
 

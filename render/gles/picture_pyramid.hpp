@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/gles/picture_planes.hpp"
+
 namespace orcart::gles {
 
 /// Bytes as they lie in memory.
@@ -22,19 +24,27 @@ int exact_halvings(int width, int height, int most) noexcept;
 /// when made.
 class PicturePyramid {
  public:
-  PicturePyramid(int width, int height, int channels, int levels);
+  enum class Keeps : std::uint8_t { coarser_levels, all_levels };
+  PicturePyramid(int width, int height, int channels, int levels, Keeps keeps = Keeps::coarser_levels);
 
   /// Halves `plane`, which is level 0 and of the size given at creation.
   void build(const PlaneView& plane) noexcept;
-  int levels() const noexcept { return static_cast<int>(levels_.size()); }
-  /// `number` 1 is half as fine as the plane; tight rows.
+  int levels() const noexcept { return in_memory_.count - 1; }
+  /// `number` 1 is half as fine as the plane; tight rows. 0 where all are kept.
   const std::uint8_t* level(int number) const noexcept {
-    return levels_[static_cast<std::size_t>(number - 1)].data();
+    return bytes_.data() + in_memory_.offset_bytes[static_cast<std::size_t>(number)];
+  }
+  /// Where all are kept.
+  PictureLevels in_memory() const noexcept {
+    PictureLevels levels = in_memory_;
+    levels.first = bytes_.data();
+    return levels;
   }
 
  private:
-  int width_, height_, channels_;
-  std::vector<std::vector<std::uint8_t>> levels_;
+  PictureLevels in_memory_;  ///< but for its first byte
+  Keeps keeps_;
+  std::vector<std::uint8_t> bytes_;
 };
 
 }  // namespace orcart::gles

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace orcart::gles {
 namespace {
@@ -15,15 +16,18 @@ constexpr std::uint32_t drm_format_of(int channels) {
   if (channels == 1) return fourcc('R', '8', ' ', ' ');
   return channels == 2 ? fourcc('G', 'R', '8', '8') : fourcc('A', 'B', '2', '4');
 }
+
+PicturePyramid pyramid_of(int width, int height, int channels, PicturePyramid::Keeps keeps) {
+  return {width, height, channels, exact_halvings(width, height, kMostLevels), keeps};
+}
 }  // namespace
 
-PictureTexture::Plane::Plane(GLenum internal_format, GLenum upload_format, int plane_width, int plane_height,
-                             int channel_count)
-    : width(plane_width),
-      height(plane_height),
-      channels(channel_count),
+PictureTexture::Plane::Plane(GLenum internal_format, GLenum upload_format, PicturePyramid levels)
+    : pyramid(std::move(levels)),
+      width(pyramid.in_memory().width),
+      height(pyramid.in_memory().height),
+      channels(pyramid.in_memory().channels),
       format(upload_format),
-      pyramid(width, height, channels, exact_halvings(width, height, kMostLevels)),
       texture(make_texture({internal_format, width, height, GL_LINEAR, 1 + pyramid.levels()})) {}
 
 void PictureTexture::Plane::upload(const ImagePlane& from) noexcept {
@@ -81,17 +85,17 @@ void PictureTexture::upload(Plane& plane, const ImagePlane& from, std::uint64_t 
   plane.upload(from);
 }
 
-PictureTexture::PictureTexture(int width_px, int height_px, PictureCopy copy)
+PictureTexture::PictureTexture(int width_px, int height_px, PictureCopy copy, PicturePyramid::Keeps keeps)
     : width_px_(width_px),
       height_px_(height_px),
       copy_(copy),
       row_(copy == PictureCopy::gpu ? 4 * static_cast<std::size_t>(width_px) : 0),
       buffers_(kMostImported),
-      rgba_(GL_RGBA8, GL_RGBA, width_px, height_px, 4),
-      y_(GL_R8, GL_RED, width_px, height_px, 1),
-      y_with_chroma_(GL_RG8, GL_RG, width_px, height_px, 2),
-      cbcr_(GL_RG8, GL_RG, std::max(width_px / 2, 1), std::max(height_px / 2, 1), 2),
-      packed_(GL_RGBA8, GL_RGBA, std::max(width_px / 2, 1), height_px, 4) {}
+      rgba_(GL_RGBA8, GL_RGBA, pyramid_of(width_px, height_px, 4, keeps)),
+      y_(GL_R8, GL_RED, pyramid_of(width_px, height_px, 1, keeps)),
+      y_with_chroma_(GL_RG8, GL_RG, pyramid_of(width_px, height_px, 2, keeps)),
+      cbcr_(GL_RG8, GL_RG, pyramid_of(std::max(width_px / 2, 1), std::max(height_px / 2, 1), 2, keeps)),
+      packed_(GL_RGBA8, GL_RGBA, pyramid_of(std::max(width_px / 2, 1), height_px, 4, keeps)) {}
 
 bool PictureTexture::upload(const ImageDescriptor& image) noexcept {
   if (image.width_px != width_px_ || image.height_px != height_px_ || image.planes[0].data == nullptr)
@@ -129,18 +133,24 @@ PictureTexture::Uniforms PictureTexture::uniforms_of(const Program& program) {
           uniform(program, "u_picture_size")};
 }
 
+const PictureTexture::Plane& PictureTexture::luma() const noexcept {
+  if (format_ == 1 || format_ == 4) return y_;
+  return format_ == 2 || format_ == 3 ? y_with_chroma_ : rgba_;
+}
+
+const PictureTexture::Plane& PictureTexture::chroma() const noexcept {
+  return format_ == 2 || format_ == 3 ? packed_ : cbcr_;
+}
+
+PicturePlanes PictureTexture::in_memory() const noexcept {
+  return {.format = format_, .luma = luma().pyramid.in_memory(), .chroma = chroma().pyramid.in_memory()};
+}
+
 void PictureTexture::bind(const Uniforms& uniforms, int unit) const noexcept {
-  const Plane* luma = &rgba_;
-  const Plane* chroma = &cbcr_;
-  if (format_ == 1 || format_ == 4) luma = &y_;
-  if (format_ == 2 || format_ == 3) {
-    luma = &y_with_chroma_;
-    chroma = &packed_;
-  }
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_2D, luma->texture.id());
+  glBindTexture(GL_TEXTURE_2D, luma().texture.id());
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit) + 1);
-  glBindTexture(GL_TEXTURE_2D, chroma->texture.id());
+  glBindTexture(GL_TEXTURE_2D, chroma().texture.id());
   glUniform1i(uniforms.format, format_);
   glUniform1i(uniforms.luma, unit);
   glUniform1i(uniforms.chroma, unit + 1);

@@ -13,7 +13,8 @@ namespace orcart::gles {
 /// Fixed size; the format may change from picture to picture. Upload allocates nothing of our own.
 class PictureTexture {
  public:
-  PictureTexture(int width_px, int height_px, PictureCopy copy = PictureCopy::cpu);
+  PictureTexture(int width_px, int height_px, PictureCopy copy = PictureCopy::cpu,
+                 PicturePyramid::Keeps keeps = PicturePyramid::Keeps::coarser_levels);
 
   /// Pictures of another size or an unknown format are refused (false), and the last one stays. The picture's
   /// memory is done with on return: the GPU's own copy is waited for.
@@ -21,6 +22,8 @@ class PictureTexture {
   /// cpu from the first picture on that the GPU could not read.
   PictureCopy copy() const noexcept { return copy_; }
   bool empty() const noexcept { return format_ < 0; }
+  /// The picture in memory: where all levels are kept, and the GPU does not copy for itself.
+  PicturePlanes in_memory() const noexcept;
 
   /// Binds to texture units `unit` and `unit + 1` and sets the uniforms of shaders/picture.glsl.
   struct Uniforms {
@@ -32,15 +35,18 @@ class PictureTexture {
  private:
   /// A texture of one plane, all its levels.
   struct Plane {
-    Plane(GLenum internal_format, GLenum upload_format, int width, int height, int channels);
+    Plane(GLenum internal_format, GLenum upload_format, PicturePyramid levels);
     void upload(const ImagePlane& from) noexcept;
 
+    PicturePyramid pyramid;
     int width, height, channels;
     GLenum format;
-    PicturePyramid pyramid;
     Texture texture;
   };
 
+  /// Those that hold the picture.
+  const Plane& luma() const noexcept;
+  const Plane& chroma() const noexcept;
   void upload(Plane& plane, const ImagePlane& from, std::uint64_t modifier) noexcept;
   /// False where the GPU cannot read there; looked at when a buffer is first seen.
   bool copy_on_gpu(const Plane& plane, const ImagePlane& from, std::uint64_t modifier) noexcept;

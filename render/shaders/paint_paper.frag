@@ -1,5 +1,4 @@
 // One texel in paper mode: texture coordinates of its triangle's corners, interpolated; no test but the triangle's own bit.
-uniform sampler2D u_points;      // the point behind the texel, M, mm
 uniform usampler2D u_owner;      // triangle number, bit 31: inside its triangle; 0x7FFFFFFF: nothing
 uniform usampler2D u_triangles;  // the three vertex numbers
 uniform sampler2D u_vertices;    // positions in M, mm
@@ -8,8 +7,6 @@ uniform usampler2D u_mask;       // one bit per triangle of the cutout
 uniform vec3 u_tip, u_view, u_up, u_side;   // M
 uniform vec2 u_paper_size;                  // S1, T1
 uniform float u_half_width_slope;           // of the rectified picture, a square about the optical axis
-uniform mat3 u_rotation_CM;
-uniform vec3 u_translation_CM;
 
 vec3 vertex(uint i) {
   uint width = uint(textureSize(u_vertices, 0).x);

@@ -67,8 +67,9 @@ struct Screen::State {
 };
 
 Result<void> Screen::State::make_inset() {
-  auto program = gles::make_program("inset", shaders::inset_vert,
-                                    std::string(shaders::picture_glsl) + shaders::inset_frag);
+  const std::string fragment = std::string(shaders::dialect_glsl) + shaders::paint_uniforms_glsl +
+                               shaders::picture_textures_glsl + shaders::picture_glsl + shaders::inset_frag;
+  auto program = gles::make_program("inset", shaders::inset_vert, fragment);
   if (!program) return tl::unexpected(program.error());
   inset = std::move(*program);
   glUseProgram(inset.id());

@@ -17,13 +17,13 @@ constexpr int kPanelWidth = 160, kPanelHeight = 120;
 
 /// A new picture of a wall, all of whose triangles are painted, and the panel's picture after it from a new
 /// eye.
-bool paint_and_draw(std::uint32_t rows) {
+bool paint_and_draw(std::uint32_t rows, PaintBy by) {
   Surface wall = scenes::plane(12, 12, kCells);
   wall.mesh.triangles.resize(std::size_t{2} * kCells * rows);
   const auto layout = build_atlas(wall.mesh, {.texel_mm = 0.1});
   const ScopeModel scope = scenes::scope();
   if (!layout) return false;
-  auto painter = Painter::create(wall, *layout, scope, {.light = LightModel::auto_exposure});
+  auto painter = Painter::create(wall, *layout, scope, {.light = LightModel::auto_exposure, .paint_by = by});
   auto screen = Screen::create(wall, *layout, scope, {.width_px = kPanelWidth, .height_px = kPanelHeight});
   if (!painter || !screen) return false;
   const CutoutPatch patch = scenes::whole(wall, {});
@@ -48,8 +48,8 @@ bool paint_and_draw(std::uint32_t rows) {
   turn_and_draw();
   const int triangles = static_cast<int>(wall.mesh.triangles.size());
   CALLGRIND_START_INSTRUMENTATION;
-  count("painting", triangles, frame);
-  count("drawing", triangles, turn_and_draw);
+  count(by == PaintBy::gpu ? "painting" : "painting_by_processor", triangles, frame);
+  if (by == PaintBy::gpu) count("drawing", triangles, turn_and_draw);
   CALLGRIND_STOP_INSTRUMENTATION;
   return true;
 }
@@ -64,7 +64,8 @@ int main() {
   CALLGRIND_STOP_INSTRUMENTATION;
   auto context = GlContext::create();
   if (!context || !context->make_current()) return EXIT_FAILURE;
-  for (const std::uint32_t rows : {testing::kCells / 2, testing::kCells})
-    if (!testing::paint_and_draw(rows)) return EXIT_FAILURE;
+  for (const PaintBy by : {PaintBy::gpu, PaintBy::processor})
+    for (const std::uint32_t rows : {testing::kCells / 2, testing::kCells})
+      if (!testing::paint_and_draw(rows, by)) return EXIT_FAILURE;
   return EXIT_SUCCESS;
 }

@@ -96,6 +96,11 @@ void add_bench_paint(CLI::App& bench_verb, int& exit_code) {
   paint->add_option("--from", arguments->settings.from, "lists (default): the cart's; ranges: whole clusters")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, PaintFrom>{{"lists", PaintFrom::lists}, {"ranges", PaintFrom::ranges}}));
+  paint
+      ->add_option("--by", arguments->settings.by,
+                   "gpu or processor; unless told otherwise whoever suits the driver")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, PaintBy>{{"gpu", PaintBy::gpu}, {"processor", PaintBy::processor}}));
   paint->add_flag("--json", arguments->json, "one JSON object");
   paint->callback([arguments, &exit_code] {
     arguments->settings.cone_half_angle_rad = arguments->cone_deg * std::numbers::pi / 180;

@@ -43,7 +43,7 @@ struct PaintedPlane {
   Painter painter;
 
   explicit PaintedPlane(const ScopeModel& scope)
-      : painter(std::move(*Painter::create(surface, layout, scope, {}))) {}
+      : painter(std::move(*Painter::create(surface, layout, scope, scenes::painted_by({})))) {}
 
   std::vector<std::uint8_t> paint(const ImageDescriptor& picture) {
     painter.clear();

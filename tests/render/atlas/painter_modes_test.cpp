@@ -25,7 +25,8 @@ struct Stage {
       : context(std::move(*GlContext::create())),
         surface(std::move(painted)),
         layout(std::move(*build_atlas(surface.mesh, {.texel_mm = texel_mm}))) {
-    painter = std::make_unique<Painter>(std::move(*Painter::create(surface, layout, scope, settings)));
+    painter = std::make_unique<Painter>(
+        std::move(*Painter::create(surface, layout, scope, scenes::painted_by(settings))));
   }
 
   template <class Visit>

@@ -28,7 +28,8 @@ struct Bench {
         surface(std::move(painted)),
         scope(std::move(with)),
         layout(std::move(*build_atlas(surface.mesh, {.texel_mm = texel_mm}))) {
-    painter = std::make_unique<Painter>(std::move(*Painter::create(surface, layout, scope, settings)));
+    painter = std::make_unique<Painter>(
+        std::move(*Painter::create(surface, layout, scope, scenes::painted_by(settings))));
   }
 
   void paint(scenes::Rgba picture, const Pose<M, C>& X_MC, std::uint32_t unit) const {

@@ -23,7 +23,7 @@ class PainterTest : public ::testing::Test {
            SeenFrom seen_from = SeenFrom::outside) {
     surface_ = std::move(surface);
     layout_ = *build_atlas(surface_.mesh, {.texel_mm = texel_mm});
-    auto painter = Painter::create(surface_, layout_, scope, {.seen_from = seen_from});
+    auto painter = Painter::create(surface_, layout_, scope, scenes::painted_by({.seen_from = seen_from}));
     ASSERT_TRUE(painter.has_value()) << painter.error().message;
     painter_ = std::make_unique<Painter>(std::move(*painter));
   }

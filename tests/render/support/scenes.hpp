@@ -10,6 +10,7 @@
 #include "realtime/mapper/cutout_patch.hpp"
 #include "realtime/optics/scope_model.hpp"
 #include "render/atlas/atlas_layout.hpp"
+#include "render/atlas/paint_settings.hpp"
 
 namespace orcart::scenes {
 
@@ -94,6 +95,14 @@ inline CutoutPatch whole(const Surface& surface, const Pose<M, C>& X_MC,
   patch.mode = mode;
   for (std::uint32_t t = 0; t < surface.mesh.triangles.size(); ++t) patch.triangles.push_back(t);
   return patch;
+}
+
+/// With whom the program of tests was built for.
+inline PainterSettings painted_by(PainterSettings settings) {
+#ifdef ORCART_PAINT_BY_PROCESSOR
+  settings.paint_by = PaintBy::processor;
+#endif
+  return settings;
 }
 
 /// The point on the surface behind texel i.

@@ -215,7 +215,8 @@ Result<PaintBenchReport> run_paint_bench(const Surface& surface, std::span<const
                                  {.seen_from = settings.seen_from,
                                   .policy = settings.policy,
                                   .highlights = Highlights::yield,
-                                  .light = LightModel::auto_exposure});
+                                  .light = LightModel::auto_exposure,
+                                  .paint_by = settings.by.value_or(paint_by_for(context->render_class()))});
   if (!painter) return tl::unexpected(painter.error());
   auto screen = make_screen(surface, *layout, scope, settings, ScreenSettings{}.most_triangles);
   if (!screen) return tl::unexpected(screen.error());

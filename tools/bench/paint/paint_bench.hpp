@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ enum class PaintFrom : std::uint8_t {
 
 struct PaintBenchSettings {
   PaintFrom from = PaintFrom::lists;
+  std::optional<PaintBy> by;  ///< unless told otherwise whoever suits the driver
   SeenFrom seen_from = SeenFrom::outside;
   PaintPolicy policy = PaintPolicy::newest;
   double texel_mm = 0.2;
