@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 namespace orcart {
 
@@ -148,7 +149,7 @@ void PanelStage::settle(const Submitted& shown, Instant scan_out) noexcept {
     const Instant deadline = record.dequeued_at + settings_.submit_deadline;
     record.late = scan_out > parts_.panel.next_vblank(deadline);
     parts_.frames.append(record);
-    screen_state_.status.latency_ms = static_cast<float>(milliseconds(scan_out - record.dequeued_at));
+    longest_latency_ = std::max(longest_latency_, scan_out - record.dequeued_at);
     screen_state_.status.late_frames += record.late;
   }
   if (shown.acknowledges && shown.acknowledged_unit != last_acknowledged_) {
@@ -192,6 +193,8 @@ void PanelStage::fill_status(Instant now) noexcept {
     if (now >= coverage_due_) {
       coverage_.store(parts_.painter.coverage(), std::memory_order_relaxed);
       status.coverage = static_cast<float>(coverage());
+      if (longest_latency_ > Nanos{0})
+        status.latency_ms = static_cast<float>(milliseconds(std::exchange(longest_latency_, Nanos{0})));
       coverage_due_ = now + 500ms;
     }
   }

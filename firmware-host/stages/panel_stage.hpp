@@ -95,6 +95,7 @@ class PanelStage final : public Stage {
   Instant count_due_{};  ///< of the pictures a second
   std::uint32_t since_counted_ = 0;
   Instant coverage_due_{};
+  Nanos longest_latency_{0};  ///< of the frames since the panel last said it
   std::atomic<double> coverage_{0};
 };
 

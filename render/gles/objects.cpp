@@ -36,7 +36,7 @@ Renderbuffer make_depth_buffer(int width, int height) {
   GLuint id = 0;
   glGenRenderbuffers(1, &id);
   glBindRenderbuffer(GL_RENDERBUFFER, id);
-  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, width, height);
   return Renderbuffer(id);
 }
 

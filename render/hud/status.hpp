@@ -14,6 +14,7 @@ enum class Freshness : std::uint8_t { lost, stale, live };
 struct Notice {
   std::array<char, 96> text{};  ///< UTF-8, zero-terminated
   enum class Level : std::uint8_t { none, info, warning, alarm } level = Level::none;
+  bool operator==(const Notice&) const = default;
 };
 
 struct Status {
@@ -32,9 +33,11 @@ struct Status {
   std::uint32_t budget_misses = 0;  ///< steps over their hard bound, of all stages
   std::string_view missed_stage{};  ///< the newest one's; a name that outlives the panel
   float coverage = 0;               ///< 0..1
-  float latency_ms = 0;             ///< newest frame: dequeue to scan-out
+  float latency_ms = 0;             ///< dequeue to scan-out, the longest of the last half second
   float rendered_hz = 0;
   Notice notice;  ///< the one thing a person should read now
+
+  bool operator==(const Status&) const = default;
 };
 
 }  // namespace orcart

@@ -162,20 +162,6 @@ Colour ground_for(Notice::Level level) {
   return level == Notice::Level::warning ? kWarn : kCalm;
 }
 
-void draw_banners(HudCanvas& canvas, const HudBox& view, const Status& status) {
-  const float unit = canvas.scale(), top = view.y + 24 * unit;
-  if (status.capture_acknowledged) {
-    draw_banner(canvas, view, top, kInk, "CAPTURE ACKNOWLEDGED");
-  } else if (status.streaming) {
-    draw_banner(canvas, view, top, kGood, "PAINTING WHILE THE PEDAL IS HELD");
-  }
-  if (status.notice.level == Notice::Level::none) return;
-  const auto& text = status.notice.text;
-  const auto length = static_cast<std::size_t>(std::find(text.begin(), text.end(), '\0') - text.begin());
-  draw_banner(canvas, view, view.y + view.height - 80 * unit, ground_for(status.notice.level),
-              {text.data(), length});
-}
-
 void put_speed(Figure& figure, const Status& status, int detail) {
   figure.whole(std::lround(status.rendered_hz)).words(" Hz");
   if (status.software_rendering && (detail == 3 || (detail > 0 && status.budget_misses == 0)))
@@ -218,20 +204,32 @@ PanelLayout panel_layout(int width_px, int height_px) noexcept {
           .bar = {0, height - bar, width, bar}};
 }
 
-void draw_grounds(HudCanvas& canvas, const PanelLayout& layout) noexcept {
+void draw_column_and_bar(HudCanvas& canvas, const PanelLayout& layout, const Status& status,
+                         InsetContent inset) noexcept {
   canvas.ground(layout.column, kGround);
   canvas.ground(layout.bar, kGround);
   const HudBox& bar = layout.bar;
   canvas.stroke({.from = {bar.x, bar.y}, .to = {bar.x + bar.width, bar.y}, .width_px = 1}, kLine);
   canvas.stroke({.from = {layout.column.x, 0}, .to = {layout.column.x, bar.y}, .width_px = 1}, kLine);
-}
-
-void draw_status(HudCanvas& canvas, const PanelLayout& layout, const Status& status,
-                 InsetContent inset) noexcept {
   draw_inset_frame(canvas, layout, status, inset);
   draw_column(canvas, layout, status);
   draw_bar(canvas, layout.bar, status);
-  draw_banners(canvas, layout.view, status);
+  canvas.flush();
+}
+
+void draw_banners(HudCanvas& canvas, const PanelLayout& layout, const Status& status) noexcept {
+  const HudBox& view = layout.view;
+  const float unit = canvas.scale(), top = view.y + 24 * unit;
+  if (status.capture_acknowledged) {
+    draw_banner(canvas, view, top, kInk, "CAPTURE ACKNOWLEDGED");
+  } else if (status.streaming) {
+    draw_banner(canvas, view, top, kGood, "PAINTING WHILE THE PEDAL IS HELD");
+  }
+  if (status.notice.level == Notice::Level::none) return;
+  const auto& text = status.notice.text;
+  const auto length = static_cast<std::size_t>(std::find(text.begin(), text.end(), '\0') - text.begin());
+  draw_banner(canvas, view, view.y + view.height - 80 * unit, ground_for(status.notice.level),
+              {text.data(), length});
 }
 
 }  // namespace orcart

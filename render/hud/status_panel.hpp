@@ -17,13 +17,13 @@ struct PanelLayout {
 };
 PanelLayout panel_layout(int width_px, int height_px) noexcept;
 
-/// What fills the round inset before the status is drawn over it.
+/// What fills the round inset.
 enum class InsetContent : std::uint8_t { picture, blank };
 
-/// Column and bar as flat grounds: under the inset's picture.
-void draw_grounds(HudCanvas& canvas, const PanelLayout& layout) noexcept;
-/// Everything else, over the inset's picture. A blank inset says NO LIVE VIDEO.
-void draw_status(HudCanvas& canvas, const PanelLayout& layout, const Status& status,
-                 InsetContent inset) noexcept;
+/// Column and bar, whole, at once; the live picture goes over them. A blank inset says NO LIVE VIDEO.
+void draw_column_and_bar(HudCanvas& canvas, const PanelLayout& layout, const Status& status,
+                         InsetContent inset) noexcept;
+/// What is said over the view.
+void draw_banners(HudCanvas& canvas, const PanelLayout& layout, const Status& status) noexcept;
 
 }  // namespace orcart

@@ -1,10 +1,9 @@
 // The near wall as a glass shell: only its rim, premultiplied.
-in vec3 v_position, v_normal;
-in vec2 v_texel;
+in float v_facing;
 out vec4 o_colour;
 
 void main() {
-  float rim = 1.0 - abs(dot(normalize(v_normal), normalize(-v_position)));
+  float rim = 1.0 - min(abs(v_facing), 1.0);
   float alpha = 0.03 + 0.30 * rim * rim * rim;
   o_colour = vec4(vec3(0.75, 0.80, 0.86) * alpha, alpha);
 }

@@ -3,7 +3,9 @@
 #include "render/views/screen.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +50,14 @@ struct Screen::State {
   std::vector<HudCanvas> canvas;  ///< exactly one
   gles::Texture picture;
   gles::Framebuffer framebuffer;
+  gles::Texture status_picture;  ///< column and bar, as `told`
+  gles::Framebuffer status_framebuffer;
+  struct Told {
+    Status status;
+    InsetContent inset = InsetContent::blank;
+    bool operator==(const Told&) const = default;
+  };
+  std::optional<Told> told;
   gles::DmaBufFramebuffers shared{4};  ///< targets in dma-bufs, drawn into without a copy
   gles::Program inset;
   gles::VertexArray no_attributes;
@@ -61,6 +71,7 @@ struct Screen::State {
   Result<void> make_inset();
   void warm_up();
   void redraw(const ScreenState& state, const Painter& painter) noexcept;
+  void show_status(const Told& now, GLuint into) noexcept;
   void draw_inset(const gles::PictureTexture& live, const CircularMask& mask) noexcept;
   GLuint shared_target(const ImageDescriptor& target) noexcept;
   bool read_into(const ImageDescriptor& target) noexcept;
@@ -108,6 +119,10 @@ Result<Screen> Screen::create(const Surface& surface, const AtlasLayout& layout,
   auto framebuffer = gles::make_framebuffer(state->picture.id());
   if (!framebuffer) return tl::unexpected(framebuffer.error());
   state->framebuffer = std::move(*framebuffer);
+  state->status_picture = gles::make_texture({GL_RGBA8, settings.width_px, settings.height_px});
+  auto status_framebuffer = gles::make_framebuffer(state->status_picture.id());
+  if (!status_framebuffer) return tl::unexpected(status_framebuffer.error());
+  state->status_framebuffer = std::move(*status_framebuffer);
   if (auto made = state->make_inset(); !made) return tl::unexpected(made.error());
   const char* extensions = reinterpret_cast<const char*>(glGetString(GL_EXTENSIONS));
   state->reads_bgra = extensions != nullptr && std::strstr(extensions, "GL_EXT_read_format_bgra") != nullptr;
@@ -130,8 +145,7 @@ void Screen::State::warm_up() {
     live.upload(packed_image(black.data(), format, scope.width_px, scope.height_px));
     draw_inset(live, scope.mask);
   }
-  draw_status(canvas[0], layout, {}, InsetContent::blank);
-  canvas[0].flush();
+  draw_column_and_bar(canvas[0], layout, {}, InsetContent::blank);
   glFinish();
 }
 
@@ -152,6 +166,24 @@ void Screen::State::draw_inset(const gles::PictureTexture& live, const CircularM
   glBindVertexArray(0);
   glDisable(GL_BLEND);
   glActiveTexture(GL_TEXTURE0);
+}
+
+/// Words are drawn when what they say has changed, and copied from then on. Leaves `into` bound.
+void Screen::State::show_status(const Told& now, GLuint into) noexcept {
+  if (told != now) {
+    glBindFramebuffer(GL_FRAMEBUFFER, status_framebuffer.id());
+    draw_column_and_bar(canvas[0], layout, now.status, now.inset);
+    told = now;
+  }
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, status_framebuffer.id());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, into);
+  for (const HudBox& box : {layout.column, layout.bar}) {
+    const auto x = static_cast<GLint>(box.x), y = static_cast<GLint>(box.y);
+    const GLint right = std::min(static_cast<GLint>(std::ceil(box.x + box.width)), settings.width_px),
+                bottom = std::min(static_cast<GLint>(std::ceil(box.y + box.height)), settings.height_px);
+    glBlitFramebuffer(x, y, right, bottom, x, y, right, bottom, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, into);
 }
 
 void Screen::State::redraw(const ScreenState& state, const Painter& painter) noexcept {
@@ -177,9 +209,9 @@ bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageD
   const GLuint into = copies ? s.framebuffer.id() : s.shared_target(target);
   if (into == 0) return false;
   s.view[0].copy_to(into, static_cast<int>(s.layout.view.x), static_cast<int>(s.layout.view.y));
-  glBindFramebuffer(GL_FRAMEBUFFER, into);
+  const bool live = state.show_live && !painter.picture().empty();
+  s.show_status({state.status, live ? InsetContent::picture : InsetContent::blank}, into);
   HudCanvas& canvas = s.canvas[0];
-  draw_grounds(canvas, s.layout);
   const TurnedOptics optics = optics_at(s.scope, state.turn_rad);
   if (state.X_MC)
     draw_scope(canvas, s.layout.view, state.eye,
@@ -187,12 +219,10 @@ bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageD
                 .X_CE = optics.X_CE,
                 .cone_half_angle_rad = s.scope.cone_half_angle_rad,
                 .predicted = state.scope_predicted});
+  draw_banners(canvas, s.layout, state.status);
   canvas.flush();
-  const bool live = state.show_live && !painter.picture().empty();
   glViewport(0, 0, s.settings.width_px, s.settings.height_px);
   if (live) s.draw_inset(painter.picture(), optics.mask);
-  draw_status(canvas, s.layout, state.status, live ? InsetContent::picture : InsetContent::blank);
-  canvas.flush();
   if (copies) return s.read_into(target);
   glFinish();  // the panel does not wait for a renderer without fences
   return true;

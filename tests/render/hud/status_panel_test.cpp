@@ -31,8 +31,8 @@ Pixels drawn(const Status& status, InsetContent inset = InsetContent::picture, i
   auto canvas = HudCanvas::create({.width_px = width, .height_px = height});
   EXPECT_TRUE(canvas.has_value());
   const PanelLayout layout = panel_layout(width, height);
-  draw_grounds(*canvas, layout);
-  draw_status(*canvas, layout, status, inset);
+  draw_column_and_bar(*canvas, layout, status, inset);
+  draw_banners(*canvas, layout, status);
   canvas->flush();
   return target.read();
 }
