@@ -1,6 +1,7 @@
 // One step for callgrind to count: a dump of its own, named by the step and its size.
 #pragma once
 
+#include <list>
 #include <string>
 
 #include <hwy/targets.h>
@@ -21,11 +22,13 @@ inline bool pin_to_avx2() {
 
 template <class Step>
 void count(const char* name, int size, Step&& step) {
+  static std::list<std::string> names;  // callgrind reads a name when it writes the dump, later
+  const std::string& dump = names.emplace_back(std::string(name) + "-" + std::to_string(size));
   CALLGRIND_ZERO_STATS;
   CALLGRIND_TOGGLE_COLLECT;
   step();
   CALLGRIND_TOGGLE_COLLECT;
-  CALLGRIND_DUMP_STATS_AT((std::string(name) + "-" + std::to_string(size)).c_str());
+  CALLGRIND_DUMP_STATS_AT(dump.c_str());
 }
 
 }  // namespace orcart::testing
