@@ -17,11 +17,11 @@ constexpr std::array<const char*, 7> kTextures{"u_points",   "u_depth", "u_owner
 struct Number {
   const char* name;
   std::size_t offset_bytes;
-  std::size_t floats;
+  std::size_t bytes;
 };
-#define ORCART_NUMBER(name)                                                           \
-  Number {                                                                            \
-#name, offsetof(PaintUniforms, name), sizeof(PaintUniforms::name) / sizeof(float) \
+#define ORCART_NUMBER(name)                                           \
+  Number {                                                            \
+#name, offsetof(PaintUniforms, name), sizeof(PaintUniforms::name) \
   }
 constexpr std::array kNumbers{
     ORCART_NUMBER(u_intrinsics),    ORCART_NUMBER(u_coefficients),   ORCART_NUMBER(u_distortion_centre),
@@ -33,12 +33,12 @@ constexpr std::array kNumbers{
     ORCART_NUMBER(u_capture),       ORCART_NUMBER(u_view_error),     ORCART_NUMBER(u_pixel_rad),
     ORCART_NUMBER(u_picture_size)};
 #undef ORCART_NUMBER
-constexpr std::size_t floats_of_all() {
+constexpr std::size_t bytes_of_all() {
   std::size_t sum = 0;
-  for (const Number& number : kNumbers) sum += number.floats;
+  for (const Number& number : kNumbers) sum += number.bytes;
   return sum;
 }
-static_assert(floats_of_all() == sizeof(PaintUniforms) / sizeof(float), "a number is missing in the list");
+static_assert(bytes_of_all() == sizeof(PaintUniforms), "a number is missing in the list");
 
 std::string choice(const char* name, bool chosen) {
   return std::string("#define ") + name + (chosen ? " true\n" : " false\n");
@@ -88,7 +88,8 @@ void PaintProgram::set_numbers(const PaintUniforms& uniforms) const noexcept {
   for (std::size_t i = 0; i < kNumbers.size(); ++i) {
     const auto* from = reinterpret_cast<const float*>(reinterpret_cast<const std::byte*>(&uniforms) +
                                                       kNumbers[i].offset_bytes);
-    switch (kNumbers[i].floats) {
+    const std::size_t floats = kNumbers[i].bytes / sizeof(float);
+    switch (floats) {
       case 2:
         glUniform2fv(numbers_[i], 1, from);
         break;
@@ -102,7 +103,7 @@ void PaintProgram::set_numbers(const PaintUniforms& uniforms) const noexcept {
         glUniformMatrix3fv(numbers_[i], 1, GL_FALSE, from);
         break;
       default:
-        glUniform1fv(numbers_[i], static_cast<GLsizei>(kNumbers[i].floats), from);
+        glUniform1fv(numbers_[i], static_cast<GLsizei>(floats), from);
     }
   }
 }
