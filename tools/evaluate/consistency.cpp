@@ -120,19 +120,30 @@ double top_of(double before, double at, double after) {
   return bend < 0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0;
 }
 
+constexpr double kLeastLead = 0.1;  ///< over every other place: where several are alike, none is known
+
+/// The largest of a square of correlations farther than half a millimetre from its top.
+double best_elsewhere(const std::vector<double>& map, int side, int top, double step_mm) {
+  constexpr double kNear_mm = 0.5;
+  double best = -1;
+  for (int i = 0; i < side * side; ++i)
+    if (std::hypot(i % side - top % side, i / side - top / side) * step_mm > kNear_mm)
+      best = std::max(best, map[static_cast<std::size_t>(i)]);
+  return best;
+}
+
 std::optional<PatchShift> shift_of(const Patch& a, const Patch& b, const Landmark& at, double step_mm) {
   const int reach = (b.edge - a.edge) / 2;
-  int best_x = 0, best_y = 0;
-  double best = -1;
+  const int side = 2 * reach + 1;
+  std::vector<double> map;
   for (int dy = -reach; dy <= reach; ++dy)
-    for (int dx = -reach; dx <= reach; ++dx)
-      if (const double c = correlation(a, b, dx, dy); c > best) {
-        best = c;
-        best_x = dx;
-        best_y = dy;
-      }
+    for (int dx = -reach; dx <= reach; ++dx) map.push_back(correlation(a, b, dx, dy));
+  const auto top = static_cast<int>(std::max_element(map.begin(), map.end()) - map.begin());
+  const int best_x = top % side - reach, best_y = top / side - reach;
+  const double best = map[static_cast<std::size_t>(top)];
   constexpr double kLeast = 0.7;
   if (best < kLeast || std::abs(best_x) == reach || std::abs(best_y) == reach) return std::nullopt;
+  if (best - best_elsewhere(map, side, top, step_mm) < kLeastLead) return std::nullopt;
   // A best shift beside what is not seen may be none: the true one could lie there.
   for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
     if (correlation(a, b, best_x + dx, best_y + dy) == kUnknown) return std::nullopt;

@@ -25,7 +25,8 @@ struct PatchShift {
 };
 
 struct PairConsistency {
-  std::vector<PatchShift> patches;  ///< those with texture enough, correlation of at least 0.7
+  std::vector<PatchShift> patches;  ///< those with texture enough, correlation of at least 0.7, 0.1 above all
+                                    ///< that is not beside it
   std::size_t looked_at = 0;        ///< patches that both pictures see whole, where the poses are right
   double median_mm = 0, p95_mm = 0;
 };

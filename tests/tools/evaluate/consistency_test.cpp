@@ -1,6 +1,8 @@
 // Two pictures of one wall are found to lie apart by as much as one of them was put wrong.
 #include "tools/evaluate/consistency.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "board/sim/tissue.hpp"
@@ -78,6 +80,22 @@ TEST(Consistency, AnEvenPictureTellsNothing) {
   RandomStream random(1, 1);
   const PairConsistency pair = compare(ball.scene(), even, even, {.patches = 30}, random);
   EXPECT_TRUE(pair.patches.empty());
+  EXPECT_GT(pair.looked_at, 0U);
+}
+
+TEST(Consistency, APatternThatRepeatsTellsNothing) {
+  const BallScene ball;
+  TakenPicture chequered{.picture = {.width_px = 640, .height_px = 480, .rgba = {}},
+                         .X_MC = near_the_wall(0)};
+  for (int y = 0; y < 480; ++y)
+    for (int x = 0; x < 640; ++x) {
+      const auto grey =
+          static_cast<std::uint8_t>(std::lround(128 + 50 * std::sin(x / 6.0) + 50 * std::sin(y / 6.0)));
+      chequered.picture.rgba.insert(chequered.picture.rgba.end(), {grey, grey, grey, 255});
+    }
+  RandomStream random(1, 1);
+  const PairConsistency pair = compare(ball.scene(), chequered, chequered, {.patches = 30}, random);
+  EXPECT_TRUE(pair.patches.empty()) << "many places are alike";
   EXPECT_GT(pair.looked_at, 0U);
 }
 
