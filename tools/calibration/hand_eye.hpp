@@ -68,6 +68,11 @@ std::optional<HandEyeSpread> hand_eye_spread(const std::vector<HandEyeView>& vie
 Result<double> leave_one_out_mm(const std::vector<HandEyeView>& views, const Lens& lens,
                                 const RefineTask& task, std::vector<double>* each = nullptr);
 
+/// The least that any one hand-eye pose could make of leave_one_out_mm with these board poses, were it fitted
+/// to just that and to all views (mm): where it is large, the marker's poses and the camera's turn
+/// differently, and no calibration helps.
+double least_left_out_mm(const std::vector<HandEyeView>& views, const Pose<S, C>& start);
+
 /// How many corners count as one: the sum of the residuals' correlations over three squares around a corner.
 double corners_alike(const std::vector<HandEyeView>& views, const Lens& lens);
 

@@ -50,6 +50,7 @@ Result<void> refine(const std::vector<HandEyeView>& views, const Lens& lens, con
   result.refined = std::move(*refined);
   result.spread = hand_eye_spread(views, result.refined, best);
   result.floor_mm = tracker_floor_mm(views, result.refined, noise);
+  result.least_left_out_mm = least_left_out_mm(views, result.refined.X_SC);
   result.views = views;
   result.task = best;
   return {};

@@ -25,6 +25,7 @@ struct HandEyeCalibration {
   std::optional<HandEyeSpread> spread;  ///< nothing where the views leave something open
   double leave_one_out_mm = 0;
   std::vector<double> left_out_mm;  ///< of each view
+  double least_left_out_mm = 0;     ///< no hand-eye pose could make the figure over all views smaller
   double floor_mm = 0;              ///< what the declared tracker noise alone makes of the board's scatter
   std::vector<std::string> names;   ///< of the views used
   std::vector<HandEyeView> views;   ///< those used, as they went into the fits

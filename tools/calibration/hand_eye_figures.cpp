@@ -25,6 +25,34 @@ double corners_alike(const std::vector<HandEyeView>& views, const Lens& lens) {
   return alone > 0 ? std::max(1.0, together / alone) : 1;
 }
 
+double least_left_out_mm(const std::vector<HandEyeView>& views, const Pose<S, C>& start) {
+  constexpr int kSteps = 20;  // Gauss-Newton on a problem that is linear but for a small turn
+  const auto count = static_cast<Eigen::Index>(views.size());
+  Pose<S, C> X_SC = start;
+  for (int step = 0; step < kSteps; ++step) {
+    Eigen::Matrix3Xd origins(3, count);
+    Eigen::MatrixXd moves(3 * count, 6);  // of each origin, by a twist of the camera: shift, turn
+    Eigen::Matrix<double, 3, 6> mean_move = Eigen::Matrix<double, 3, 6>::Zero();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const HandEyeView& view = views[static_cast<std::size_t>(i)];
+      const Eigen::Vector3d& p = view.X_CB.translation_mm;
+      origins.col(i) = (view.X_TS * X_SC * view.X_CB).translation_mm;
+      Eigen::Matrix3d turned;
+      turned << 0, p.z(), -p.y(), -p.z(), 0, p.x(), p.y(), -p.x(), 0;
+      moves.middleRows<3>(3 * i) << Eigen::Matrix3d::Identity(), turned;
+      moves.middleRows<3>(3 * i) = (view.X_TS.rotation * X_SC.rotation * moves.middleRows<3>(3 * i)).eval();
+      mean_move += moves.middleRows<3>(3 * i) / static_cast<double>(count);
+    }
+    const Eigen::Matrix3Xd apart = origins.colwise() - origins.rowwise().mean();
+    for (Eigen::Index i = 0; i < count; ++i) moves.middleRows<3>(3 * i) -= mean_move;
+    const Twist twist = -moves.completeOrthogonalDecomposition().solve(apart.reshaped());
+    X_SC = moved(X_SC, twist);
+  }
+  std::vector<double> each;
+  const double scatter = scatter_mm(views, X_SC, each);
+  return scatter * static_cast<double>(count) / static_cast<double>(count - 1);
+}
+
 double tracker_floor_mm(const std::vector<HandEyeView>& views, const HandEyeFit& fit,
                         const TrackerNoise& noise) {
   double sum2 = 0;

@@ -68,6 +68,7 @@ std::string answer(const HandEyeCalibration& c, bool as_json) {
            ",\n \"scatter_mm\": " + json::number(c.refined.scatter_mm) +
            ", \"closed_form_scatter_mm\": " + json::number(c.closed_form.scatter_mm) +
            ", \"leave_one_out_mm\": " + json::number(c.leave_one_out_mm) +
+           ", \"least_left_out_mm\": " + json::number(c.least_left_out_mm) +
            ", \"tracker_floor_mm\": " + json::number(c.floor_mm) +
            ",\n \"mapping_error\": {\"mean_mm\": " + json::number(mapping.mean_mm) +
            ", \"sd_mm\": " + json::number(mapping.sd_mm) + ", \"max_mm\": " + json::number(mapping.worst_mm) +
@@ -94,6 +95,7 @@ std::string answer(const HandEyeCalibration& c, bool as_json) {
         mm.x(), mm.y(), mm.z(), mrad.x(), mrad.y(), mrad.z(), std::sqrt(c.spread->misfit));
   }
   out += json::format("the tracker's declared noise alone would scatter it by %.3f mm\n", c.floor_mm);
+  out += json::format("no hand-eye pose leaves less than %.3f mm with views left out\n", c.least_left_out_mm);
   if (!c.left_out_mm.empty())
     out += json::format("as a mapping error of one point: mean %.2f, s.d. %.2f, max %.2f mm, n %zu\n",
                         mapping.mean_mm, mapping.sd_mm, mapping.worst_mm, c.left_out_mm.size());

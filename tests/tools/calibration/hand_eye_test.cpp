@@ -37,6 +37,18 @@ TEST(HandEye, ClosedFormIsExactWithoutNoise) {
   EXPECT_LT(fit->scatter_mm, 1e-6);
 }
 
+TEST(HandEye, TheLeastLeftOutIsNothingForPosesThatFitAndIsMadeByOneThatDoesNot) {
+  auto views = room(0);
+  const Twist aside = (Twist() << 2, -1, 3, 0.02, -0.01, 0.03).finished();
+  EXPECT_LT(least_left_out_mm(views, moved(kX_SC, aside)), 1e-6) << "from a start beside the truth";
+  views[1].X_TS.translation_mm.x() += 3;
+  const double least = least_left_out_mm(views, kX_SC);
+  std::vector<double> each;
+  const auto n = static_cast<double>(views.size());
+  EXPECT_LE(least, scatter_mm(views, kX_SC, each) * n / (n - 1) + 1e-9);
+  EXPECT_GT(least, 0.3) << "no turn or shift of the camera moves one view alone";
+}
+
 TEST(HandEye, RefinementKeepsTheTruthAndHeldLens) {
   const Lens lens = test_lens(LensModel::brown);
   const auto fit = refine_hand_eye(room(0.2), lens, {});
