@@ -4,6 +4,7 @@
 #include <fcntl.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <ctime>
 #include <filesystem>
 
@@ -21,6 +22,13 @@ int take_over(const OpenDevice& device) noexcept {
   int clock = CLOCK_MONOTONIC;
   if (const int answer = device.control(EVIOCSCLOCKID, &clock); answer < 0) return answer;
   return std::min(0, device.control(EVIOCGRAB, reinterpret_cast<void*>(1)));
+}
+
+Result<std::size_t, PortFault> read_events(const OpenDevice& device, std::span<input_event> events) noexcept {
+  const std::int64_t size = device.calls().read(device.fd(), events.data(), events.size_bytes());
+  if (size == -EAGAIN || size == -EINTR) return tl::unexpected(PortFault::nothing_yet);
+  if (size <= 0) return tl::unexpected(PortFault::disconnected);
+  return static_cast<std::size_t>(size) / sizeof(input_event);
 }
 
 Instant stamp_of(const input_event& event) noexcept {

@@ -4,6 +4,8 @@
 
 #include <linux/input.h>
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +22,10 @@ Result<OpenDevice, int> open_input(DeviceCalls& calls, const std::string& node) 
 
 /// Stamps on CLOCK_MONOTONIC from now on, and no event for anybody else. 0, or a negative error number.
 int take_over(const OpenDevice& device) noexcept;
+
+/// As many events as wait and fit, without waiting for more; PortFault::nothing_yet, or disconnected,
+/// whatever the error.
+Result<std::size_t, PortFault> read_events(const OpenDevice& device, std::span<input_event> events) noexcept;
 
 /// When the kernel saw it.
 Instant stamp_of(const input_event& event) noexcept;

@@ -136,14 +136,12 @@ void EvdevEncoder::accept(std::uint16_t type, std::uint16_t code, std::int32_t v
 
 Result<void, PortFault> EvdevEncoder::read_more() noexcept {
   std::array<input_event, 32> events{};
-  const std::int64_t size = calls_.read(device_.fd(), events.data(), sizeof events);
-  if (size == -EAGAIN || size == -EINTR) return tl::unexpected(PortFault::nothing_yet);
-  if (size <= 0) {
-    lose_device();
-    return tl::unexpected(PortFault::disconnected);
+  const auto count = read_events(device_, events);
+  if (!count) {
+    if (count.error() == PortFault::disconnected) lose_device();
+    return tl::unexpected(count.error());
   }
-  const std::size_t count = static_cast<std::size_t>(size) / sizeof(input_event);
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < *count; ++i)
     accept(events[i].type, events[i].code, events[i].value, stamp_of(events[i]));
   return {};
 }

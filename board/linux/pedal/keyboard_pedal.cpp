@@ -169,18 +169,16 @@ void KeyboardPedal::wait(Instant deadline) noexcept {
 // asked for.
 Result<void, PortFault> KeyboardPedal::read_more() noexcept {
   std::array<input_event, 16> events{};
-  const std::int64_t size = calls_.read(device_.fd(), events.data(), sizeof events);
-  if (size == -EAGAIN || size == -EINTR) return tl::unexpected(PortFault::nothing_yet);
-  if (size <= 0) {
-    lose_device();
-    return tl::unexpected(PortFault::disconnected);
+  const auto count = read_events(device_, events);
+  if (!count) {
+    if (count.error() == PortFault::disconnected) lose_device();
+    return tl::unexpected(count.error());
   }
-  const std::size_t count = static_cast<std::size_t>(size) / sizeof(input_event);
   const auto keep = [&](EdgeKind kind, Instant at) {
     edges_[count_++] = ledger_.accept({.kind = kind, .at = at, .number = std::nullopt});
   };
   first_ = count_ = 0;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < *count; ++i) {
     const input_event& event = events[i];
     const Instant at = stamp_of(event);
     if (event.type == EV_SYN && event.code == SYN_DROPPED) {
