@@ -6,6 +6,7 @@
 #include "tools/orcart/verbs.hpp"
 #include "tools/registration/json_text.hpp"
 #include "tools/registration/pivot.hpp"
+#include "tools/registration/sequence_file.hpp"
 
 namespace orcart {
 namespace {
@@ -14,10 +15,14 @@ constexpr const char* kExample =
     "Example:\n  orcart pivot sweep.csv --out pointer.toml\n\n"
     "Poses of the marker in the tracker while the tip stands in a divot and the pointer is tilted to all "
     "sides: poses.csv, rows of 12 or\n"
-    "16 numbers with or without a name or time stamp, or a folder of 4x4 matrices.";
+    "16 numbers with or without a name or time stamp, a folder of 4x4 matrices, or a PLUS recording "
+    "(.igs.mha): "
+    "there --stylus and\n"
+    "--reference name the two ends of the transform, StylusToTracker unless told.";
 
 struct Arguments {
   std::string poses, out, page, name = "pointer";
+  StylusNames names{.reference = "Tracker"};
   bool json = false;
 };
 
@@ -54,8 +59,17 @@ std::string answer(const PivotFit& fit, bool as_json) {
                       fit.sweep_rad * 57.29578, fit.inlier_mm);
 }
 
+Result<PosesFile> sweep(const Arguments& arguments) {
+  if (!is_sequence_name(arguments.poses)) return read_poses(arguments.poses);
+  const auto sequence = read_sequence(arguments.poses);
+  if (!sequence) return tl::unexpected(sequence.error());
+  auto poses = stylus_poses(*sequence, arguments.names);
+  if (!poses) return fail(arguments.poses + ": " + poses.error().message);
+  return PosesFile{.poses = *std::move(poses), .notes = {}};
+}
+
 Result<void> run(const Arguments& arguments) {
-  const auto poses = read_poses(arguments.poses);
+  const auto poses = sweep(arguments);
   if (!poses) return tl::unexpected(poses.error());
   for (const std::string& note : poses->notes) std::fprintf(stderr, "note: %s\n", note.c_str());
   const auto fit = fit_pivot(poses->poses);
@@ -75,7 +89,12 @@ void add_pivot(CLI::App& app, int& exit_code) {
   CLI::App* verb = app.add_subcommand("pivot", "Where a pointer's tip lies in its marker");
   verb->footer(kExample);
   const auto arguments = std::make_shared<Arguments>();
-  verb->add_option("poses", arguments->poses, "the sweep: a file or a folder")->required();
+  verb->add_option("poses", arguments->poses, "the sweep: a file, a folder or a recording .igs.mha")
+      ->required();
+  verb->add_option("--stylus", arguments->names.stylus, "the pointer's name in a recording")
+      ->capture_default_str();
+  verb->add_option("--reference", arguments->names.reference, "in a recording: what its poses are in")
+      ->capture_default_str();
   verb->add_option("--name", arguments->name, "the pointer's name")->capture_default_str();
   verb->add_option("--out", arguments->out, "the tool's file")->required();
   verb->add_option("--page", arguments->page, "also one HTML page with each pose's distance");

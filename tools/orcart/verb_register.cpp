@@ -26,7 +26,10 @@ constexpr const char* kExample =
     "registration.toml\n\n"
     "FIXED: fiducials in the volume; MOVING: the same, touched with the pointer, in the patient's reference; "
     "or a PLUS recording\n"
-    "(.igs.mha) of a stylus that rested on each, with --stylus-tip. FRE only tells outliers; the predicted "
+    "(.igs.mha) of a stylus that rested on each, with --stylus-tip. In a MOVING list of 3D Slicer, R, A, S "
+    "as "
+    "Slicer shows\n"
+    "them are x, y, z of the reference. FRE only tells outliers; the predicted "
     "error comes from --fle.";
 
 struct Arguments {
@@ -34,18 +37,23 @@ struct Arguments {
   std::optional<Space> space;
   RegistrationTask task;
   std::vector<double> target, stylus_tip;
+  StylusNames names;
   std::string surface_points, picture, page;
   double surface_error_mm = 0.5;
   bool json = false;
 };
 
-Result<std::vector<NamedPoint>> moving_points(const Arguments& arguments) {
-  if (!arguments.moving.ends_with(".mha")) return read_points(arguments.moving);
+Result<std::vector<NamedPoint>> moving_points(const Arguments& arguments, std::vector<std::string>& notes) {
+  if (!is_sequence_name(arguments.moving)) return read_measured_points(arguments.moving, &notes);
   if (arguments.stylus_tip.size() != 3)
     return fail(arguments.moving + ": a recording needs the stylus tip in its marker, --stylus-tip x,y,z");
   const auto sequence = read_sequence(arguments.moving);
   if (!sequence) return tl::unexpected(sequence.error());
-  return stylus_rests(*sequence, {arguments.stylus_tip[0], arguments.stylus_tip[1], arguments.stylus_tip[2]});
+  auto rests =
+      stylus_rests(*sequence, {arguments.stylus_tip[0], arguments.stylus_tip[1], arguments.stylus_tip[2]}, {},
+                   arguments.names);
+  if (!rests) return fail(arguments.moving + ": " + rests.error().message);
+  return rests;
 }
 
 /// What the surface adds: refinement by points on it, and the predicted error over all of it.
@@ -126,7 +134,7 @@ Result<OnSurface> use_surface(const Arguments& arguments, const TriangleMesh& me
                               Registration& registration) {
   OnSurface on;
   if (!arguments.surface_points.empty()) {
-    const auto points = read_points(arguments.surface_points);
+    const auto points = read_measured_points(arguments.surface_points, &registration.notes);
     if (!points) return tl::unexpected(points.error());
     SurfaceTask task{.error_mm = arguments.surface_error_mm};
     for (const NamedPoint& point : *points) task.points_R_mm.push_back(point.mm);
@@ -176,14 +184,16 @@ std::string answer_text(const Registration& r, const Eigen::Vector3d& target_mm,
 }
 
 Result<void> run(Arguments& arguments) {
-  auto fixed = read_points(arguments.fixed, arguments.space);
+  std::vector<std::string> notes;
+  auto fixed = read_points(arguments.fixed, arguments.space, &notes);
   if (!fixed) return tl::unexpected(fixed.error());
-  auto moving = moving_points(arguments);
+  auto moving = moving_points(arguments, notes);
   if (!moving) return tl::unexpected(moving.error());
   arguments.task.fixed = std::move(*fixed);
   arguments.task.moving = std::move(*moving);
   auto registration = register_points(arguments.task);
   if (!registration) return fail(arguments.moving + ": " + registration.error().message);
+  registration->notes.insert(registration->notes.begin(), notes.begin(), notes.end());
   if (arguments.surface.empty() && !(arguments.surface_points.empty() && arguments.picture.empty()))
     return fail("--surface-points and --picture belong to a surface; --surface is wanted too");
   RegistrationFile file{.surface_hash = "unstated"};
@@ -227,7 +237,8 @@ void add_register(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   verb->add_option("fixed", arguments->fixed, "fiducials in the volume: points.csv, .fcsv or .mrk.json")
       ->required();
-  verb->add_option("moving", arguments->moving, "the same, measured: points.csv, or a recording .igs.mha")
+  verb->add_option("moving", arguments->moving,
+                   "the same, measured: points.csv, .fcsv or .mrk.json, or a recording .igs.mha")
       ->required();
   static const std::map<std::string, Space> spaces{{"LPS", Space::lps}, {"RAS", Space::ras}};
   verb->add_option_function<Space>(
@@ -250,6 +261,10 @@ void add_register(CLI::App& app, int& exit_code) {
   verb->add_option("--stylus-tip", arguments->stylus_tip, "x,y,z in the stylus's marker, mm, for a recording")
       ->delimiter(',')
       ->expected(3);
+  verb->add_option("--stylus", arguments->names.stylus, "the stylus's name in a recording")
+      ->capture_default_str();
+  verb->add_option("--reference", arguments->names.reference, "the reference's name in a recording")
+      ->capture_default_str();
   verb->add_option("--surface", arguments->surface,
                    "the surface that the registration belongs to; its hash is written");
   verb->add_option(

@@ -42,15 +42,21 @@ const NamedPoint* find(const std::vector<NamedPoint>& points, const std::string&
   return found == points.end() ? nullptr : &*found;
 }
 
-bool all_named(const RegistrationTask& task) {
-  return std::all_of(task.fixed.begin(), task.fixed.end(),
-                     [&](const NamedPoint& p) { return find(task.moving, p.name) != nullptr; });
+bool all_named(const std::vector<NamedPoint>& points, const std::vector<NamedPoint>& among) {
+  return std::all_of(points.begin(), points.end(),
+                     [&](const NamedPoint& p) { return find(among, p.name) != nullptr; });
 }
 
-Result<Pairs> by_name(const RegistrationTask& task) {
+/// A fiducial that was not touched is left out where every touched one has its namesake.
+Result<Pairs> by_name(const RegistrationTask& task, std::vector<std::string>& notes) {
   Pairs pairs;
+  const bool some_untouched = all_named(task.moving, task.fixed);
   for (const NamedPoint& fixed : task.fixed) {
     const NamedPoint* moving = find(task.moving, fixed.name);
+    if (moving == nullptr && some_untouched) {
+      notes.push_back("the fiducial \"" + fixed.name + "\" was not measured and is left out");
+      continue;
+    }
     if (moving == nullptr)
       return fail("the fiducial \"" + fixed.name +
                   "\" was not measured; a point of that name, or --order, is accepted");
@@ -84,16 +90,35 @@ Result<Pairs> by_distances(const RegistrationTask& task) {
   return pairs;
 }
 
-Result<Pairs> pair_up(const RegistrationTask& task) {
-  switch (task.pairing.value_or(all_named(task) ? Pairing::by_name : Pairing::by_order)) {
+Result<Pairs> pair_up(const RegistrationTask& task, std::vector<std::string>& notes) {
+  const bool named = all_named(task.fixed, task.moving) || all_named(task.moving, task.fixed);
+  switch (task.pairing.value_or(named ? Pairing::by_name : Pairing::by_order)) {
     case Pairing::by_name:
-      return by_name(task);
+      return by_name(task, notes);
     case Pairing::by_order:
       return by_order(task);
     case Pairing::unknown:
       break;
   }
   return by_distances(task);
+}
+
+double spread_mm(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  double sum = 0;
+  for (const auto& p : points) middle += p / static_cast<double>(points.size());
+  for (const auto& p : points) sum += (p - middle).squaredNorm();
+  return std::sqrt(sum);
+}
+
+/// No touch of a fiducial is off by so much that one set is twice the other; another unit makes it so.
+Result<void> check_scale(const Pairs& pairs) {
+  const double fixed = spread_mm(pairs.fixed_mm), moving = spread_mm(pairs.moving_mm);
+  if (pairs.fixed_mm.size() < 3 || !(moving > 0) || (moving > fixed / 2 && moving < fixed * 2)) return {};
+  return fail(
+      json::format("the measured points lie %.3g times as far apart as the fiducials; both in millimetres, "
+                   "and each beside its partner, are accepted",
+                   moving / fixed));
 }
 
 /// One point of five or more whose absence makes all others agree.
@@ -161,9 +186,10 @@ void measure_shape(const Pairs& pairs, Registration& result) {
 }  // namespace
 
 Result<Registration> register_points(const RegistrationTask& task) {
-  auto pairs = pair_up(task);
-  if (!pairs) return tl::unexpected(pairs.error());
   Registration result;
+  auto pairs = pair_up(task, result.notes);
+  if (!pairs) return tl::unexpected(pairs.error());
+  if (auto alike = check_scale(*pairs); !alike) return tl::unexpected(alike.error());
   result.fle_mm = task.fle_mm;
   take_outlier(*pairs, result);
   const auto fit = pairs->fit();

@@ -15,7 +15,7 @@ enum class Pairing { by_name, by_order, unknown };
 struct RegistrationTask {
   std::vector<NamedPoint> fixed;   ///< in M
   std::vector<NamedPoint> moving;  ///< in R
-  std::optional<Pairing> pairing;  ///< unset: by name where all fixed names are there, else by order
+  std::optional<Pairing> pairing;  ///< unset: by name where all names of one side are there, else by order
   double fle_mm = 0.5;  ///< fiducial localisation error, RMS, declared: never taken from this patient's FRE
 };
 
@@ -42,7 +42,8 @@ struct Registration {
   std::vector<std::string> notes;  ///< e.g. what a nearly flat set does to the error beside it
 };
 
-/// Refuses fewer than three pairs, points on one line, and names that do not pair up.
+/// Refuses fewer than three pairs, points on one line, names that do not pair up, and sets of unlike size
+/// (metres).
 Result<Registration> register_points(const RegistrationTask& task);
 
 /// Of X_MR: a twist in R (mm, rad), from the declared fiducial error.

@@ -33,6 +33,24 @@ TEST(RegisterPoints, FindsAKnownPose) {
   EXPECT_LT(r->fre_mm, 1e-9);
 }
 
+TEST(RegisterPoints, AFiducialThatWasNotTouchedIsLeftOutAndTold) {
+  auto moving = measured(kFiducials);
+  moving.erase(moving.begin() + 1);
+  const auto r = register_points({.fixed = kFiducials, .moving = moving});
+  ASSERT_TRUE(r) << r.error().message;
+  EXPECT_EQ(r->points.size(), 5U);
+  EXPECT_LT(r->fre_mm, 1e-9);
+  EXPECT_NE(r->notes.at(0).find("\"2\" was not measured"), std::string::npos);
+}
+
+TEST(RegisterPoints, RefusesPointsInMetres) {
+  auto moving = measured(kFiducials);
+  for (NamedPoint& p : moving) p.mm /= 1000;
+  const auto r = register_points({.fixed = kFiducials, .moving = moving});
+  ASSERT_FALSE(r);
+  EXPECT_NE(r.error().message.find("lie 0.001 times as far apart"), std::string::npos);
+}
+
 TEST(RegisterPoints, FindsTheOrderAndLeavesStrayPointsAlone) {
   auto moving = measured(kFiducials);
   std::swap(moving[0], moving[4]);

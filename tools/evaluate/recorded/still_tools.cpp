@@ -76,7 +76,7 @@ StillStretch taken(const ToolTrack& track, const Rest& rest, GroupedValues& erro
 }  // namespace
 
 Result<std::vector<ToolTrack>> tool_tracks(const std::filesystem::path& file) {
-  if (file.extension() == ".mha") {
+  if (is_sequence_name(file)) {
     const auto sequence = read_sequence(file);
     if (!sequence) return tl::unexpected(sequence.error());
     return of_sequence(file, *sequence);
