@@ -32,17 +32,30 @@ std::size_t drop_degenerate_triangles(TriangleMesh& mesh) {
   });
 }
 
-bool is_closed(const TriangleMesh& mesh) {
-  std::vector<std::uint64_t> forward, backward;
+std::size_t unpaired_edges(const TriangleMesh& mesh) {
+  struct Side {
+    std::uint64_t edge;  ///< the lower vertex above the higher one
+    bool upwards;
+  };
+  std::vector<Side> sides;
+  sides.reserve(3 * mesh.triangles.size());
   for (const std::array<std::uint32_t, 3>& t : mesh.triangles)
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint64_t a = t[i], b = t[(i + 1) % 3];
-      forward.push_back(a << 32U | b);
-      backward.push_back(b << 32U | a);
+      sides.push_back({.edge = std::min(a, b) << 32U | std::max(a, b), .upwards = a < b});
     }
-  std::sort(forward.begin(), forward.end());
-  std::sort(backward.begin(), backward.end());
-  return forward == backward && std::adjacent_find(forward.begin(), forward.end()) == forward.end();
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.edge < b.edge; });
+  std::size_t unpaired = 0;
+  for (std::size_t i = 0, next = 0; i < sides.size(); i = next) {
+    while (next < sides.size() && sides[next].edge == sides[i].edge) ++next;
+    const bool pair = next == i + 2 && sides[i].upwards != sides[i + 1].upwards;
+    unpaired += pair ? 0 : 1;
+  }
+  return unpaired;
+}
+
+bool is_closed(const TriangleMesh& mesh) {
+  return unpaired_edges(mesh) == 0;
 }
 
 double signed_volume_mm3(const TriangleMesh& mesh) {

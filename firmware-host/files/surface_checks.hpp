@@ -12,6 +12,8 @@ namespace orcart::checks {
 std::size_t drop_degenerate_triangles(TriangleMesh& mesh);
 /// Every edge belongs to exactly two triangles, which run along it in opposite directions.
 bool is_closed(const TriangleMesh& mesh);
+/// How many edges do not: 0 where it is closed.
+std::size_t unpaired_edges(const TriangleMesh& mesh);
 /// Positive for a closed mesh whose triangles are counter-clockwise seen from outside (divergence theorem).
 double signed_volume_mm3(const TriangleMesh& mesh);
 /// 128 bits in hex over vertices and triangles, in order.

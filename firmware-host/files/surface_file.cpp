@@ -7,6 +7,7 @@
 
 #include "firmware-host/files/surface_checks.hpp"
 #include "firmware-host/files/surface_formats.hpp"
+#include "firmware-host/files/vertex_merger.hpp"
 #include "firmware-host/files/whole_file.hpp"
 
 namespace orcart {
@@ -80,6 +81,17 @@ Result<void> check_numbers(const TriangleMesh& mesh, const std::string& name) {
   return {};
 }
 
+/// Some programs give each triangle, or each patch of one normal, vertices of its own. Where equal ones
+/// joined leave fewer edges open, they are joined; says how many went.
+std::size_t join_split_vertices(TriangleMesh& mesh) {
+  TriangleMesh joined = mesh;
+  merge_equal_vertices(joined);
+  const std::size_t fewer = mesh.vertices_mm.size() - joined.vertices_mm.size();
+  if (fewer == 0 || checks::unpaired_edges(joined) >= checks::unpaired_edges(mesh)) return 0;
+  mesh = std::move(joined);
+  return fewer;
+}
+
 }  // namespace
 
 Result<Surface> make_surface(TriangleMesh mesh, const std::string& name, SurfaceNotes* notes) {
@@ -107,6 +119,10 @@ Result<Surface> finish_surface(ParsedSurface parsed, const std::string& name, Su
   const auto space = space_of(parsed, where_unstated, name);
   if (!space) return tl::unexpected(space.error());
   convert_to_lps(*space, parsed.mesh);  // a half turn: what points along the winding still does
+  const std::size_t split = parsed.stated.hash.empty() ? join_split_vertices(parsed.mesh) : 0;
+  if (split > 0 && notes != nullptr)
+    notes->sentences.push_back(name + ": " + std::to_string(split) +
+                               " vertices stood where others stand and were joined with them");
   auto surface = make_surface(std::move(parsed.mesh), name, notes);
   if (!surface) return surface;
   if (!surface->closed && parsed.normals.against > parsed.normals.along && notes != nullptr)

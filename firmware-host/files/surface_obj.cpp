@@ -18,14 +18,27 @@ std::optional<std::uint32_t> vertex_of(std::string_view corner, std::size_t vert
   return static_cast<std::uint32_t>(*number > 0 ? *number - 1 : count + *number);
 }
 
+/// The next line, with those behind it that a backslash at the end joins to it.
+std::string_view whole_line(TextCursor& lines, std::string& joined) {
+  std::string_view line = lines.line();
+  if (!line.ends_with('\\')) return line;
+  joined.clear();
+  while (line.ends_with('\\')) {
+    joined.append(line.substr(0, line.size() - 1)) += ' ';
+    line = lines.line();
+  }
+  return joined.append(line);
+}
+
 }  // namespace
 
 Result<ParsedSurface> parse_obj(std::span<const std::byte> bytes, const std::string& name) {
   ParsedSurface surface;
   TextCursor lines({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   std::vector<std::uint32_t> corners;
+  std::string joined;
   while (!lines.at_end()) {
-    const std::string_view line = lines.line();
+    const std::string_view line = whole_line(lines, joined);
     TextCursor words(line);
     const std::string_view key = words.word();
     const auto wrong = [&](const std::string& expected) {
@@ -49,7 +62,9 @@ Result<ParsedSurface> parse_obj(std::span<const std::byte> bytes, const std::str
                      ", the vertices before " + "this line, are accepted");
       corners.push_back(*vertex);
     }
-    if (corners.size() < 3) return wrong("a face of 3 or more corners is expected");
+    if (corners.empty()) return wrong("a face of 3 or more corners is expected");
+    if (corners.size() < 3)
+      corners.resize(3, corners.front());  // without area: dropped and told with the others
     append_polygon(corners, surface.mesh.vertices_mm.size(), surface.mesh);
     if (surface.mesh.triangles.size() > kLargestTriangleCount)
       return wrong(std::to_string(kLargestTriangleCount) + " triangles are the most accepted");

@@ -1,6 +1,8 @@
 // STL: binary and ascii. Its triangles repeat their vertices; equal ones are merged exactly, in the order
 // first seen.
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 
@@ -30,6 +32,13 @@ Result<ParsedSurface> parse_binary(std::span<const std::byte> bytes, std::uint32
   return surface;
 }
 
+/// A key in lower case: some CAD programs write all of a file in capitals.
+std::string key_of(TextCursor& words) {
+  std::string key(words.word());
+  std::transform(key.begin(), key.end(), key.begin(), [](unsigned char c) { return std::tolower(c); });
+  return key;
+}
+
 Result<ParsedSurface> parse_ascii(std::string_view text, const std::string& name) {
   ParsedSurface surface;
   VertexMerger merger(surface.mesh);
@@ -40,7 +49,7 @@ Result<ParsedSurface> parse_ascii(std::string_view text, const std::string& name
   while (!lines.at_end()) {
     const std::string_view line = lines.line();
     TextCursor words(line);
-    const std::string_view key = words.word();
+    const std::string key = key_of(words);
     const auto place = [&] { return name + ":" + std::to_string(lines.line_number()) + ": "; };
     if (key == "solid") take_comment(line, surface);
     ended = key == "endsolid" || (ended && key.empty());
@@ -72,7 +81,8 @@ Result<ParsedSurface> parse_stl(std::span<const std::byte> bytes, const std::str
   if (bytes.size() >= kHeaderBytes)
     std::memcpy(&count, bytes.data() + kHeaderBytes - sizeof count, sizeof count);
   const bool fits = bytes.size() >= kHeaderBytes && bytes.size() == kHeaderBytes + count * kTriangleBytes;
-  if (!fits && text.starts_with("solid")) return parse_ascii(text, name);
+  TextCursor words(text.substr(0, kHeaderBytes));
+  if (!fits && key_of(words) == "solid") return parse_ascii(text, name);
   if (bytes.size() < kHeaderBytes)
     return fail(name + ": is " + std::to_string(bytes.size()) +
                 " bytes long; an STL file of 84 or more is expected");

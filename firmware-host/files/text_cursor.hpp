@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 
 namespace orcart {
 
@@ -47,10 +48,10 @@ class TextCursor {
   template <class Number>
   static std::optional<Number> parse_number(std::string_view word) {
     if (word.starts_with('+')) word.remove_prefix(1);
-    Number value{};
+    std::conditional_t<std::is_floating_point_v<Number>, double, Number> value{};  // 1e-46 is no float, yet 0
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc{} || end != word.data() + word.size() || word.empty()) return std::nullopt;
-    return value;
+    return static_cast<Number>(value);
   }
 
  private:

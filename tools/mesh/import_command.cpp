@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdio>
+
+#include <Eigen/Geometry>
 
 #include "tools/mesh/decimation.hpp"
 
@@ -11,11 +14,17 @@ namespace orcart {
 
 namespace {
 
-std::string ending_of(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return ending;
+/// Nothing that an endoscope looks at is this small; a surface in metres is.
+Result<void> check_unit(const TriangleMesh& mesh, const std::string& name) {
+  constexpr float kSmallest_mm = 1;
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& vertex : mesh.vertices_mm) box.extend(vertex);
+  const float across = box.diagonal().norm();
+  if (across >= kSmallest_mm) return {};
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", static_cast<double>(across));
+  return fail(name + ": is " + text.data() +
+              " mm across; that looks like metres, and millimetres are accepted");
 }
 
 Result<void> write_levels(const Surface& surface, const SurfaceOutput& output, SurfaceReport& report) {
@@ -38,6 +47,13 @@ Result<void> write_levels(const Surface& surface, const SurfaceOutput& output, S
 }
 
 }  // namespace
+
+std::string ending_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return ending;
+}
 
 bool is_surface_name(const std::filesystem::path& file) {
   constexpr std::array kEndings{".ply", ".stl", ".obj", ".mz3", ".vtk", ".vtp"};
@@ -86,6 +102,7 @@ Result<SurfaceReport> import_surface(const ImportCommand& command, const Surface
   SurfaceNotes notes;
   auto surface = reader(command.input, &notes, command.where_unstated);
   if (!surface) return tl::unexpected(surface.error());
+  if (auto sized = check_unit(surface->mesh, name); !sized) return tl::unexpected(sized.error());
   SurfaceReport report{.source = name,
                        .kind = "surface, " + ending_of(command.input).substr(1),
                        .triangles_before = surface->mesh.triangles.size(),

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "firmware-host/files/surface_file.hpp"
 #include "tools/mesh/surface_report.hpp"
@@ -28,13 +29,17 @@ struct ImportCommand {
   SurfaceOutput output;
 };
 
+/// A name's ending in lower case, with its dot.
+std::string ending_of(const std::filesystem::path& file);
+
 /// Whether a file's name says that it holds a surface: .ply, .stl, .obj, .mz3, .vtk, .vtp.
 bool is_surface_name(const std::filesystem::path& file);
 
 using SurfaceReader =
     std::function<Result<Surface>(const std::filesystem::path&, SurfaceNotes*, std::optional<Space>)>;
 
-/// An open or self-intersecting surface is accepted and told. Writes nothing where it fails.
+/// An open or self-intersecting surface is accepted and told; one in metres is refused. Writes nothing where
+/// it fails.
 Result<SurfaceReport> import_surface(const ImportCommand& command, const SurfaceReader& reader,
                                      const SurfaceProgress& progress);
 

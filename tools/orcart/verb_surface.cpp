@@ -111,7 +111,7 @@ Result<SurfaceReport> from_volume(const Arguments& arguments, const SurfaceProgr
 
 Result<Surface> read_any_surface(const std::filesystem::path& file, SurfaceNotes* notes,
                                  std::optional<Space> where_unstated) {
-  const std::string ending = file.extension().string();
+  const std::string ending = ending_of(file);
   if (ending == ".vtk" || ending == ".vtp") return read_vtk_surface(file, notes, where_unstated);
   return read_surface(file, notes, where_unstated);
 }

@@ -18,6 +18,7 @@
 #include <vtkXMLPolyDataReader.h>
 
 #include "firmware-host/files/surface_formats.hpp"
+#include "tools/mesh/import_command.hpp"
 
 namespace orcart {
 
@@ -70,7 +71,7 @@ Result<Surface> read_vtk_surface(const std::filesystem::path& file, SurfaceNotes
     return fail(name + ": is not there; a surface file is expected");
   vtkObject::GlobalWarningDisplayOff();
   Result<ParsedSurface> surface = fail(name + ": is no VTK file with a surface (polydata); one is expected");
-  if (file.extension() == ".vtp") {
+  if (ending_of(file) == ".vtp") {
     vtkNew<vtkXMLPolyDataReader> reader;
     reader->SetFileName(name.c_str());
     if (reader->CanReadFile(name.c_str()) == 0) return tl::unexpected(surface.error());

@@ -48,7 +48,7 @@ TEST(SurfaceFile, ReadsBigEndianPlyWithDoublesExtrasAndAnyOrder) {
       "v\n"
       "element face 4\nproperty uchar flag\nproperty list ushort uint vertex_index\n"
       "property list uchar float texcoord\nend_header\n";
-  for (const auto& v : tetrahedron().vertices_mm) {
+  for (const TriangleMesh mesh = tetrahedron(); const auto& v : mesh.vertices_mm) {
     append<double>(bytes, v.z(), true);
     bytes += '\x7f';
     append<double>(bytes, v.x(), true);
@@ -58,7 +58,7 @@ TEST(SurfaceFile, ReadsBigEndianPlyWithDoublesExtrasAndAnyOrder) {
     append<double>(bytes, v.y(), true);
   }
   append<std::int32_t>(bytes, 9, true);
-  for (const auto& t : tetrahedron().triangles) {
+  for (const TriangleMesh mesh = tetrahedron(); const auto& t : mesh.triangles) {
     append<std::uint8_t>(bytes, 1);
     append<std::uint16_t>(bytes, 3, true);
     for (const auto i : t) append<std::uint32_t>(bytes, i, true);
@@ -133,6 +133,96 @@ TEST(SurfaceFile, MergesTheVerticesOfAsciiStlExactly) {
   ASSERT_TRUE(surface) << surface.error().message;
   EXPECT_EQ(surface->mesh.vertices_mm.size(), 4U);
   EXPECT_TRUE(surface->closed);
+}
+
+TEST(SurfaceFile, ReadsAsciiStlInCapitalsBehindABlank) {
+  const TemporaryFolder folder;
+  std::string text = " SOLID X SPACE=LPS\n";
+  for (const TriangleMesh mesh = tetrahedron(); const auto& t : mesh.triangles) {
+    text += "FACET NORMAL 0 0 0\nOUTER LOOP\n";
+    for (const auto i : t) {
+      const Eigen::Vector3f v = tetrahedron().vertices_mm[i];
+      text += "VERTEX " + std::to_string(v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(v.z()) +
+              "\n";
+    }
+    text += "ENDLOOP\nENDFACET\n";
+  }
+  const auto surface = read_surface(folder.write("s.stl", text + "ENDSOLID X\n"));
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_TRUE(surface->closed);
+}
+
+TEST(SurfaceFile, ANumberTooSmallForAFloatIsZero) {
+  const TemporaryFolder folder;
+  const auto surface =
+      read_surface(folder.write("s.obj",
+                                "# SPACE=LPS\nv 1e-46 0 -1.5e-300\nv 1 0 0\nv 0 2 0\nv 0 0 3\n"
+                                "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"));
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_EQ(surface->mesh.vertices_mm[0], Eigen::Vector3f(0, 0, 0));
+}
+
+TEST(SurfaceFile, TrianglesWithVerticesOfTheirOwnAreJoinedAndTold) {
+  const TemporaryFolder folder;
+  std::string vertices, faces;
+  int count = 0;
+  for (const TriangleMesh mesh = tetrahedron(); const auto& t : mesh.triangles) {
+    for (const auto i : t) {
+      const Eigen::Vector3f v = tetrahedron().vertices_mm[i];
+      vertices += std::to_string(v.x()) + " " + std::to_string(v.y()) + " " + std::to_string(v.z()) + "\n";
+    }
+    faces += "3 " + std::to_string(count) + " " + std::to_string(count + 1) + " " +
+             std::to_string(count + 2) + "\n";
+    count += 3;
+  }
+  SurfaceNotes notes;
+  const auto surface = read_surface(
+      folder.write("s.ply",
+                   "ply\nformat ascii 1.0\ncomment SPACE=LPS\nelement vertex 12\nproperty float x\n"
+                   "property float y\nproperty float z\nelement face 4\n"
+                   "property list uchar int vertex_indices\nend_header\n" +
+                       vertices + faces),
+      &notes);
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_TRUE(surface->closed);
+  EXPECT_EQ(surface->mesh.vertices_mm.size(), 4U);
+  EXPECT_NE(notes.sentences.at(0).find("8 vertices stood where others stand"), std::string::npos);
+}
+
+TEST(SurfaceFile, SheetsThatOnlyTouchAreNotJoined) {
+  const TemporaryFolder folder;
+  std::string text = "# SPACE=LPS\n";
+  for (int copy = 0; copy < 2; ++copy)  // two closed tetrahedra on one edge
+    for (const TriangleMesh mesh = tetrahedron(); const auto& v : mesh.vertices_mm)
+      text += "v " + std::to_string(copy == 0 ? v.x() : -v.x()) + " " + std::to_string(v.y()) + " " +
+              std::to_string(v.z()) + "\n";
+  text += "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 5 6 7\nf 5 8 6\nf 5 7 8\nf 6 8 7\n";
+  const auto surface = read_surface(folder.write("s.obj", text));
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_TRUE(surface->closed);
+  EXPECT_EQ(surface->mesh.vertices_mm.size(), 8U);
+}
+
+TEST(SurfaceFile, FacesOfTwoCornersAreDroppedAndTold) {
+  const TemporaryFolder folder;
+  SurfaceNotes notes;
+  const auto surface = read_surface(folder.write("s.obj",
+                                                 "# SPACE=LPS\nv 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n"
+                                                 "f 1 3 2\nf 1// 2//\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"),
+                                    &notes);
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_TRUE(surface->closed);
+  EXPECT_NE(notes.sentences.at(0).find("1 triangles without area were dropped"), std::string::npos);
+}
+
+TEST(SurfaceFile, AnObjLineMayGoOnBehindABackslash) {
+  const TemporaryFolder folder;
+  const auto surface = read_surface(folder.write("s.obj",
+                                                 "# SPACE=LPS\nv 0 0 0\nv 1 0 \\\n0\nv 0 2 0\nv 0 0 3\n"
+                                                 "f 1 3 \\\r\n2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"));
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_TRUE(surface->closed);
+  EXPECT_EQ(surface->mesh.vertices_mm[1], Eigen::Vector3f(1, 0, 0));
 }
 
 TEST(SurfaceFile, ReadsBinaryStlEvenIfItsHeaderBeginsWithSolid) {

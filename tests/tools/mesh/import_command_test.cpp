@@ -78,6 +78,14 @@ TEST(ImportCommand, TellsAnOpenSurface) {
   EXPECT_NE(text_of(*report).find("open along 3 edges"), std::string::npos);
 }
 
+TEST(ImportCommand, RefusesASurfaceInMetres) {
+  const TemporaryFolder folder;
+  const auto report = imported({.input = folder.write("cube.obj", obj_of(cube(0.2F), "SPACE=LPS")),
+                                .output = {.out = folder / "cube.ply"}});
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().message.find("is 0.346 mm across; that looks like metres"), std::string::npos);
+}
+
 TEST(ImportCommand, LeavesNoFileWhereTheSpaceIsNotKnown) {
   const TemporaryFolder folder;
   const auto report = imported({.input = folder.write("cube.obj", obj_of(cube(10), "by hand")),
