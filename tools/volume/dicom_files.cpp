@@ -35,19 +35,49 @@ std::uint32_t little_at(std::string_view bytes, std::size_t at, std::size_t coun
   return number;
 }
 
+/// Where the data set begins and how it is written, or nothing where that is not a plain little-endian one.
+struct SetStart {
+  std::size_t at = 0;
+  bool implicit = false, plain = true;
+};
+
+/// A file without the 128 bytes and `DICM` in front, as software of the 1990s wrote them: its first two
+/// elements are of group 8, in order.
+std::optional<SetStart> bare_start(std::string_view bytes) {
+  if (bytes.size() < 16 || little_at(bytes, 0, 2) != 8) return std::nullopt;
+  const auto capital = [&](std::size_t at) { return bytes[at] >= 'A' && bytes[at] <= 'Z'; };
+  const bool named = capital(4) && capital(5);
+  const std::uint32_t length = named ? little_at(bytes, 6, 2) : little_at(bytes, 4, 4);
+  if (length > bytes.size() || 8 + length + 4 > bytes.size()) return std::nullopt;
+  const std::size_t next = 8 + length;
+  if (little_at(bytes, next, 2) != 8 || little_at(bytes, next + 2, 2) <= little_at(bytes, 2, 2))
+    return std::nullopt;
+  return SetStart{.at = 0, .implicit = !named};
+}
+
+std::optional<SetStart> set_start(std::string_view bytes) {
+  constexpr std::size_t kMetaAt = 132;
+  if (bytes.substr(0, kMetaAt).substr(std::min<std::size_t>(bytes.size(), 128)) != "DICM")
+    return bare_start(bytes);
+  if (bytes.size() < kMetaAt + 12 || little_at(bytes, kMetaAt, 4) != 2) return std::nullopt;
+  const std::size_t set_at = kMetaAt + 12 + little_at(bytes, kMetaAt + 8, 4);
+  if (set_at + 8 > bytes.size()) return std::nullopt;
+  const std::string_view meta = bytes.substr(kMetaAt, set_at - kMetaAt);
+  const bool big = meta.find("1.2.840.10008.1.2.2"sv) != std::string_view::npos,
+             deflated = meta.find("1.2.840.10008.1.2.1.99"sv) != std::string_view::npos;
+  return SetStart{.at = set_at,
+                  .implicit = meta.find("1.2.840.10008.1.2\0"sv) != std::string_view::npos,
+                  .plain = !big && !deflated};
+}
+
 /// Whether every element up to the pixels lies within the file: GDCM aborts on some files that are cut short
 /// and fills others up. Walks explicit and implicit little endian; an element of undefined length, whose end
 /// only its contents tell, ends the walk.
 bool is_whole(std::string_view bytes) {
-  constexpr std::size_t kMetaAt = 132;
-  if (bytes.size() < kMetaAt + 12 || little_at(bytes, kMetaAt, 4) != 2) return false;
-  const std::size_t set_at = kMetaAt + 12 + little_at(bytes, kMetaAt + 8, 4);
-  if (set_at + 8 > bytes.size()) return false;
-  const std::string_view meta = bytes.substr(kMetaAt, set_at - kMetaAt);
-  const bool implicit = meta.find("1.2.840.10008.1.2\0"sv) != std::string_view::npos;
-  if (meta.find("1.2.840.10008.1.2.2"sv) != std::string_view::npos) return true;     // big endian
-  if (meta.find("1.2.840.10008.1.2.1.99"sv) != std::string_view::npos) return true;  // deflated
-  std::size_t at = set_at;
+  const auto start = set_start(bytes);
+  if (!start || !start->plain) return start.has_value();
+  const bool implicit = start->implicit;
+  std::size_t at = start->at;
   while (at < bytes.size()) {
     if (at + 8 > bytes.size()) return false;
     const std::string_view kind = bytes.substr(at + 4, 2);
@@ -113,7 +143,6 @@ std::string variant_of(const gdcm::DataSet& set) {
     const std::string value = text_at(set, group, element);
     if (!value.empty()) variant += (variant.empty() ? "" : ", ") + (name + (" " + value));
   };
-  add("acquisition", 0x0020, 0x0012);
   add("time", 0x0020, 0x0100);
   add("echo", 0x0018, 0x0086);
   return variant;
@@ -123,10 +152,12 @@ Result<DicomSlice> slice_of(const std::filesystem::path& file, const gdcm::DataS
   DicomSlice slice{.file = file};
   slice.patient = std::hash<std::string>{}(text_at(set, 0x0010, 0x0020) + "|" + text_at(set, 0x0010, 0x0010) +
                                            "|" + text_at(set, 0x0010, 0x0030));
+  slice.instance = text_at(set, 0x0008, 0x0018);
   slice.series = text_at(set, 0x0020, 0x000E);
   slice.frame_of_reference = text_at(set, 0x0020, 0x0052);
   slice.modality = text_at(set, 0x0008, 0x0060);
   slice.variant = variant_of(set);
+  slice.acquisition = text_at(set, 0x0020, 0x0012);
   slice.rows = short_at(set, 0x0028, 0x0010);
   slice.columns = short_at(set, 0x0028, 0x0011);
   slice.thickness_mm = number_at(set, 0x0018, 0x0050, 1);
@@ -219,7 +250,8 @@ Result<void> read_pixels(const DicomSlice& slice, float* values) {
 bool is_dicom(const std::filesystem::path& file) {
   std::array<char, 132> start{};
   std::ifstream(file, std::ios::binary).read(start.data(), start.size());
-  return std::string_view(start.data() + 128, 4) == "DICM";
+  const std::string_view bytes(start.data(), start.size());
+  return bytes.substr(128) == "DICM" || bare_start(bytes);
 }
 
 Result<DicomFolder> read_dicom_folder(const std::filesystem::path& folder) {

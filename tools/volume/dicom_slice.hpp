@@ -15,8 +15,9 @@ namespace orcart {
 struct DicomSlice {
   std::filesystem::path file;
   std::size_t patient = 0;  ///< a hash of the patient's identity, to tell two apart
-  std::string series, frame_of_reference, modality, description;
-  std::string variant;  ///< echo, time or acquisition: what sets slices at one place apart
+  std::string instance, series, frame_of_reference, modality, description;
+  std::string variant;      ///< echo or time: what sets slices at one place apart
+  std::string acquisition;  ///< its number; slices of one volume may have many
   int columns = 0, rows = 0;
   bool has_position = false;
   PlainPoint position_mm{};                                ///< LPS, centre of the first pixel
@@ -34,8 +35,8 @@ struct DicomStack {
 
 /// Groups by series, orientation, size and variant, sorts each along its normal and cuts it where slices are
 /// missing (a gap of over 1.5 times the usual). A slice at the place of another is refused where nothing in
-/// the headers tells them apart; so are two patients. Stacks in the order of their slice count, the largest
-/// first; a lone slice is a stack too.
+/// the headers tells them apart, but a second copy of one image is left out; so are two patients. Stacks in
+/// the order of their slice count, the largest first; a lone slice is a stack too.
 Result<std::vector<DicomStack>> stack_slices(const std::string& folder, std::vector<DicomSlice> slices);
 
 /// The stack that `wanted` (from 1) names; 0: the only one with more than one slice. Refuses with the list.

@@ -119,6 +119,46 @@ std::string describe(const DicomStack& stack) {
   return said;
 }
 
+/// A scanner that steps or pauses counts acquisitions up within one volume; one that scans twice, with and
+/// without contrast, does too. They are one volume where the next begins behind the last one's end.
+std::vector<std::vector<DicomSlice>> by_acquisition(std::vector<DicomSlice> group) {
+  std::map<std::string, std::vector<DicomSlice>> parts;
+  const PlainPoint normal = normal_of(group.front());
+  for (const DicomSlice& slice : group) parts[slice.acquisition].push_back(slice);
+  std::vector<std::pair<double, double>> spans;
+  for (const auto& [number, part] : parts) {
+    const auto [low, high] = std::minmax_element(part.begin(), part.end(), [&](const auto& a, const auto& b) {
+      return dot(a.position_mm, normal) < dot(b.position_mm, normal);
+    });
+    spans.emplace_back(dot(low->position_mm, normal), dot(high->position_mm, normal));
+  }
+  std::sort(spans.begin(), spans.end());
+  bool apart = true;
+  for (std::size_t i = 1; i < spans.size(); ++i) apart = apart && spans[i].first > spans[i - 1].second + 1e-3;
+  std::vector<std::vector<DicomSlice>> groups;
+  if (apart) {
+    groups.push_back(std::move(group));
+    return groups;
+  }
+  for (auto& [number, part] : parts) {
+    for (DicomSlice& slice : part)
+      slice.variant = "acquisition " + number + (slice.variant.empty() ? "" : ", " + slice.variant);
+    groups.push_back(std::move(part));
+  }
+  return groups;
+}
+
+/// The same image copied twice into a folder: its instance, place and kind are the same. Says how many went.
+std::size_t drop_copies(std::vector<DicomSlice>& slices) {
+  std::set<std::string> known;
+  return std::erase_if(slices, [&](const DicomSlice& slice) {
+    if (slice.instance.empty() || !slice.has_position) return false;
+    std::string key = slice.instance + "|" + slice.acquisition + "|" + kind_of(slice);
+    for (const double x : slice.position_mm) key += "|" + std::to_string(x);
+    return !known.insert(key).second;
+  });
+}
+
 }  // namespace
 
 Result<std::vector<DicomStack>> stack_slices(const std::string& folder, std::vector<DicomSlice> slices) {
@@ -127,6 +167,7 @@ Result<std::vector<DicomStack>> stack_slices(const std::string& folder, std::vec
   if (patients.size() > 1)
     return fail(folder + ": holds images of " + std::to_string(patients.size()) +
                 " patients; the images of one are expected");
+  const std::size_t copies = drop_copies(slices);
   std::map<std::string, std::vector<DicomSlice>> groups;
   for (DicomSlice& slice : slices) {
     if (!slice.has_position)
@@ -137,7 +178,12 @@ Result<std::vector<DicomStack>> stack_slices(const std::string& folder, std::vec
   }
   std::vector<DicomStack> stacks;
   for (auto& [kind, group] : groups)
-    if (auto cut = cut_at_gaps(folder, std::move(group), stacks); !cut) return tl::unexpected(cut.error());
+    for (auto& part : by_acquisition(std::move(group)))
+      if (auto cut = cut_at_gaps(folder, std::move(part), stacks); !cut) return tl::unexpected(cut.error());
+  if (copies > 0)
+    for (DicomStack& stack : stacks)
+      stack.notes.push_back(std::to_string(copies) +
+                            " images are in the folder twice; one of each was taken");
   std::stable_sort(stacks.begin(), stacks.end(), [](const DicomStack& a, const DicomStack& b) {
     return a.slices.size() > b.slices.size();
   });

@@ -39,6 +39,10 @@ bool yes(const MetaHeader& header, std::initializer_list<const char*> keys) {
   return word == "true" || word == "1" || word == "yes";
 }
 
+bool is_text(const MetaHeader& header) {
+  return lower_case(field(header.fields, {"binarydata"}).value_or("true")) == "false";
+}
+
 std::optional<VoxelType> voxel_type(const std::string& word) {
   const std::map<std::string, VoxelType> known{
       {"MET_UCHAR", VoxelType::u8},      {"MET_CHAR", VoxelType::i8},   {"MET_USHORT", VoxelType::u16},
@@ -103,17 +107,21 @@ Result<std::vector<std::byte>> detached_body(const VolumeSource& source, const M
   DetachedFiles detached{.folder = source.file.parent_path(), .names = *std::move(names)};
   const auto skip = numbers_of(field(header.fields, {"headersize"}).value_or("0"), 1);
   detached.skip_bytes = skip ? static_cast<std::int64_t>((*skip)[0]) : 0;
-  detached.bytes_each =
-      yes(header, {"compresseddata"}) ? 0 : volume.lattice.voxels() * bytes_of(type) / files;
+  const bool counted = !yes(header, {"compresseddata"}) && !is_text(header);
+  detached.bytes_each = counted ? volume.lattice.voxels() * bytes_of(type) / files : 0;
   return read_detached(name, detached);
 }
 
 }  // namespace
 
 bool is_meta_image(std::span<const std::byte> bytes) {
-  const std::string_view start = text_of(bytes.first(std::min<std::size_t>(bytes.size(), 4096)));
-  return start.find("NDims") != std::string_view::npos && start.find("DimSize") != std::string_view::npos &&
-         start.find("ElementDataFile") != std::string_view::npos;
+  const auto holds = [&](std::size_t within, const char* word) {
+    return text_of(bytes.first(std::min(bytes.size(), within))).find(word) != std::string_view::npos;
+  };
+  constexpr std::size_t kStart = 4096,
+                        kLongestHeader = std::size_t{1} << 20U;  // PLUS puts hundreds of fields first
+  return holds(kStart, "NDims") && holds(kLongestHeader, "DimSize") &&
+         holds(kLongestHeader, "ElementDataFile");
 }
 
 Result<Volume> parse_meta_image(const VolumeSource& source) {
@@ -137,14 +145,17 @@ Result<Volume> parse_meta_image(const VolumeSource& source) {
     own = *std::move(read);
     body = own;
   }
-  if (lower_case(field(header.fields, {"binarydata"}).value_or("true")) == "false") {
+  if (is_text(header)) {
     if (auto taken = take_text_voxels(name, body, volume); !taken) return tl::unexpected(taken.error());
     return volume;
   }
   const std::size_t wanted = volume.lattice.voxels() * bytes_of(*type);
-  if (yes(header, {"compresseddata"}) && body.size() < wanted) {
-    own = inflate(body, wanted);
-    body = own;
+  if (yes(header, {"compresseddata"})) {  // a detached gzip is unpacked already; noise is no shorter packed
+    auto plain = inflate(body, wanted);
+    if (plain.size() == wanted || body.size() < wanted) {
+      own = std::move(plain);
+      body = own;
+    }
   }
   const VoxelEncoding encoding{.type = *type,
                                .big_endian = yes(header, {"binarydatabyteordermsb", "elementbyteordermsb"})};

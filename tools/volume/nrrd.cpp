@@ -1,4 +1,5 @@
 // NRRD, attached and detached (Kindlmann, "Definition of NRRD File Format", teem.sourceforge.net).
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -100,7 +101,25 @@ Result<void> take_directions(const std::string& name, const NrrdHeader& header, 
   return {};
 }
 
-Result<void> place(const VolumeSource& source, const NrrdHeader& header, VoxelLattice& lattice) {
+/// Millimetres in the unit of the file's places, which stands once for each axis of the space; unstated, it
+/// is one.
+Result<double> unit_mm(const std::string& name, const NrrdHeader& header) {
+  std::string units = lower_case(field(header.fields, {"spaceunits", "units"}).value_or(""));
+  std::replace(units.begin(), units.end(), '"', ' ');
+  std::optional<double> found;
+  for (const std::string& word : words_of(units)) {
+    const double mm = word == "m" || word.starts_with("met")      ? 1000
+                      : word == "cm" || word.starts_with("centi") ? 10
+                      : word == "um" || word.starts_with("micro") ? 0.001
+                                                                  : 1;
+    if (found.value_or(mm) != mm)
+      return fail(name + ": has the units " + units + "; one unit for all three axes is expected");
+    found = mm;
+  }
+  return found.value_or(1);
+}
+
+Result<void> place_in_its_unit(const VolumeSource& source, const NrrdHeader& header, VoxelLattice& lattice) {
   const std::string name = source.file.string();
   const std::string space = field(header.fields, {"space"}).value_or("");
   const auto signs = signs_of(space);
@@ -125,6 +144,35 @@ Result<void> place(const VolumeSource& source, const NrrdHeader& header, VoxelLa
   }
   convert_to_lps(*source.where_unstated, lattice);
   return {};
+}
+
+Result<void> place(const VolumeSource& source, const NrrdHeader& header, VoxelLattice& lattice) {
+  const auto mm = unit_mm(source.file.string(), header);
+  if (!mm) return tl::unexpected(mm.error());
+  if (auto placed = place_in_its_unit(source, header, lattice); !placed) return placed;
+  for (std::size_t row = 0; row < 3; ++row) {
+    lattice.origin_mm[row] *= *mm;
+    for (auto& step : lattice.step_mm) step[row] *= *mm;
+  }
+  return {};
+}
+
+/// Drops an axis that has one sample and no direction: a channel, or a time, that there is only one of.
+void drop_single_axis(NrrdHeader& header) {
+  std::vector<std::string> sizes = words_of(field(header.fields, {"sizes"}).value_or("")), directions;
+  for (const std::string& word : words_of(field(header.fields, {"spacedirections"}).value_or("")))
+    if (word.starts_with('(') || word == "none" || directions.empty())
+      directions.push_back(word);
+    else
+      directions.back() += " " + word;  // a blank within the brackets
+  if (sizes.size() != 4 || directions.size() != 4) return;
+  const auto none = std::find(directions.begin(), directions.end(), "none") - directions.begin();
+  if (none == 4 || sizes[static_cast<std::size_t>(none)] != "1") return;
+  sizes.erase(sizes.begin() + none);
+  directions.erase(directions.begin() + none);
+  header.fields["dimension"] = "3";
+  header.fields["sizes"] = sizes[0] + " " + sizes[1] + " " + sizes[2];
+  header.fields["spacedirections"] = directions[0] + " " + directions[1] + " " + directions[2];
 }
 
 Result<void> take_sizes(const std::string& name, NrrdHeader& header, VoxelLattice& lattice) {
@@ -155,9 +203,13 @@ Result<std::vector<std::byte>> detached_body(const VolumeSource& source, const N
   if (!names) return tl::unexpected(names.error());
   const std::size_t files = names->size();
   DetachedFiles detached{.folder = source.file.parent_path(), .names = *std::move(names)};
-  const auto skip = numbers_of(field(header.fields, {"byteskip"}).value_or("0"), 1);
+  const auto skip = numbers_of(field(header.fields, {"byteskip"}).value_or("0"), 1),
+             lines = numbers_of(field(header.fields, {"lineskip"}).value_or("0"), 1);
+  if (lines) detached.skip_lines = static_cast<std::int64_t>((*lines)[0]);
   detached.skip_bytes = skip ? static_cast<std::int64_t>((*skip)[0]) : 0;
-  detached.bytes_each = lattice.voxels() * bytes_of(type) / files;
+  const std::string coding = lower_case(field(header.fields, {"encoding"}).value_or(""));
+  const bool counted = coding == "raw" || coding == "gzip" || coding == "gz";
+  detached.bytes_each = counted ? lattice.voxels() * bytes_of(type) / files : 0;
   return read_detached(name, detached);
 }
 
@@ -170,6 +222,7 @@ bool is_nrrd(std::span<const std::byte> bytes) {
 Result<Volume> parse_nrrd(const VolumeSource& source) {
   const std::string name = source.file.string();
   NrrdHeader header = read_header(text_of(source.bytes));
+  drop_single_axis(header);
   Volume volume;
   if (auto taken = take_sizes(name, header, volume.lattice); !taken) return tl::unexpected(taken.error());
   const auto type = voxel_type(header.fields["type"]);

@@ -79,6 +79,11 @@ Result<std::vector<std::byte>> read_detached(const std::string& name, const Deta
   for (const std::string& file : detached.names) {
     auto bytes = read_plain(detached.folder / file);
     if (!bytes) return fail(name + ": its voxels are missing: " + bytes.error().message);
+    for (std::int64_t line = 0; line < detached.skip_lines; ++line) {
+      const auto end = std::find(bytes->begin(), bytes->end(), std::byte{'\n'});
+      if (end == bytes->end()) break;
+      bytes->erase(bytes->begin(), end + 1);
+    }
     const std::uint64_t least = detached.bytes_each + std::max<std::int64_t>(detached.skip_bytes, 0);
     if (bytes->size() < least)
       return fail((detached.folder / file).string() + ": holds fewer than the " + std::to_string(least) +
@@ -86,7 +91,10 @@ Result<std::vector<std::byte>> read_detached(const std::string& name, const Deta
     const std::size_t skip = detached.skip_bytes < 0 ? bytes->size() - detached.bytes_each
                                                      : static_cast<std::size_t>(detached.skip_bytes);
     const auto first = bytes->begin() + static_cast<std::ptrdiff_t>(skip);
-    if (detached.names.size() == 1 && skip == 0) return *std::move(bytes);
+    if (detached.names.size() == 1) {
+      bytes->erase(bytes->begin(), first);
+      return bytes;
+    }
     all.insert(all.end(), first, first + static_cast<std::ptrdiff_t>(detached.bytes_each));
   }
   return all;

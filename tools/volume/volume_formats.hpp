@@ -47,8 +47,9 @@ std::string_view text_of(std::span<const std::byte> bytes);
 struct DetachedFiles {
   std::filesystem::path folder;
   std::vector<std::string> names;
-  std::int64_t skip_bytes = 0;  ///< of each file; -1: the voxels are its end
-  std::uint64_t bytes_each = 0;
+  std::int64_t skip_lines = 0;   ///< of each file, before its bytes are counted
+  std::int64_t skip_bytes = 0;   ///< of each file; -1: the voxels are its end
+  std::uint64_t bytes_each = 0;  ///< 0 where it is not known: text, or one packed file
 };
 /// `stated` is a name, or a pattern with first, last and step; `listed` wins where it is not empty. Refuses
 /// another number of files than one or one a slice.

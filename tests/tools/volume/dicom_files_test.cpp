@@ -70,6 +70,20 @@ TEST(DicomFiles, TwoPatientsAndManyFramesAreRefused) {
   expect_refused(folder, "holds 20 frames");
 }
 
+TEST(DicomFiles, ThoseWithoutThePreambleAreReadToo) {
+  const TemporaryFolder folder, bare;
+  write_series(folder, 3);
+  for (const auto& entry : std::filesystem::directory_iterator(path_of(folder))) {
+    std::ifstream in(entry.path(), std::ios::binary);
+    const std::string whole{std::istreambuf_iterator<char>(in), {}};
+    bare.write(entry.path().filename().string(), whole.substr(whole.find(std::string("\x08\0\x16\0", 4))));
+  }
+  const auto volume = read_volume({.path = path_of(folder)}), same = read_volume({.path = path_of(bare)});
+  ASSERT_TRUE(volume && same) << same.error().message;
+  EXPECT_EQ(same->values, volume->values);
+  EXPECT_EQ(same->lattice.origin_mm, volume->lattice.origin_mm);
+}
+
 TEST(DicomFiles, ASingleSliceAsksForItsFolder) {
   const TemporaryFolder folder;
   const auto volume = read_volume({.path = folder.write("one.dcm", DicomSample{}.bytes())});

@@ -101,6 +101,30 @@ TEST(DicomStacks, TwoEchoesAreTwoStacksAndTheSameTwiceIsRefused) {
   expect_refused(chosen(twice), "lie at the same place and nothing in them says why");
 }
 
+TEST(DicomStacks, ASecondCopyOfAnImageIsLeftOutAndTold) {
+  auto all = slices({1, 2, 3});
+  for (DicomSlice& one : all) one.instance = "1.2.3." + std::to_string(one.position_mm[2]);
+  all.push_back(all[1]);
+  all.back().file = "Copy of z2.dcm";
+  const auto stack = chosen(all);
+  ASSERT_TRUE(stack) << stack.error().message;
+  EXPECT_EQ(stack->slices.size(), 3U);
+  EXPECT_NE(stack->notes.at(0).find("1 images are in the folder twice"), std::string::npos);
+  for (DicomSlice& one : all) one.instance = "0";  // an anonymiser's
+  EXPECT_EQ(chosen(all)->slices.size(), 3U);
+}
+
+TEST(DicomStacks, AcquisitionsThatGoOnWhereTheLastEndedAreOneVolume) {
+  auto steps = slices({1, 2, 3, 4, 5});
+  for (std::size_t i = 0; i < steps.size(); ++i) steps[i].acquisition = std::to_string(10 - i);
+  const auto one = chosen(steps);
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ(one->slices.size(), 5U);
+  auto twice = slices({1, 3, 5, 2, 4, 6});  // interleaved: before and after contrast
+  for (std::size_t i = 0; i < twice.size(); ++i) twice[i].acquisition = i < 3 ? "1" : "2";
+  expect_refused(chosen(twice), "(acquisition 1)");
+}
+
 TEST(DicomStacks, TwoPatientsAreRefused) {
   auto all = slices({1, 2, 3});
   all[1].patient = 7;

@@ -173,6 +173,47 @@ TEST(NrrdFile, ADetachedHeaderNamesItsSlices) {
       "s.2: holds fewer than the 12 bytes");
 }
 
+TEST(NrrdFile, ItsUnitIsObeyed) {
+  const TemporaryFolder folder;
+  const auto centimetres =
+      read(folder, "v.nrrd",
+           replaced(kNrrd, "sizes:", "space units: \"cm\" \"cm\" \"cm\"\nsizes:") + big_shorts());
+  ASSERT_TRUE(centimetres) << centimetres.error().message;
+  EXPECT_EQ(centimetres->lattice.step_mm[1], (PlainPoint{0, 0, 20}));
+  EXPECT_EQ(centimetres->lattice.origin_mm, (PlainPoint{50, 60, 70}));
+  expect_refused(read(folder, "v.nrrd",
+                      replaced(kNrrd, "sizes:", "space units: \"m\" \"mm\" \"mm\"\nsizes:") + big_shorts()),
+                 "one unit for all three axes");
+}
+
+TEST(NrrdFile, AnAxisOfOneChannelIsDropped) {
+  const TemporaryFolder folder;
+  const std::string header =
+      replaced(replaced(replaced(replaced(kNrrd, "dimension: 3", "dimension: 4"), "sizes: 3", "sizes: 1 3"),
+                        "kinds:", "kinds: vector"),
+               "directions: (1,0,0)", "directions: none (1, 0,0)");
+  const auto volume = read(folder, "v.nrrd", header + big_shorts());
+  ASSERT_TRUE(volume) << volume.error().message;
+  EXPECT_EQ(volume->lattice.size, (std::array{3, 2, 2}));
+  EXPECT_EQ(volume->lattice.step_mm[0], (PlainPoint{1, 0, 0}));
+}
+
+TEST(NrrdFile, LinesBytesAndTextInADetachedFile) {
+  const TemporaryFolder folder;
+  folder.write("v.raw", "a line\nanother\nxy" + big_shorts());
+  const auto skipped = read(
+      folder, "v.nhdr",
+      replaced(kNrrd, "encoding: raw\n", "encoding: raw\nline skip: 2\nbyte skip: 2\ndata file: v.raw\n"));
+  ASSERT_TRUE(skipped) << skipped.error().message;
+  EXPECT_EQ(skipped->values[11], 11);
+  folder.write("v.txt", "0 1 2 3 4 5 6 7 8 9 10 11");
+  const auto text = read(
+      folder, "t.nhdr",
+      replaced(replaced(kNrrd, "short", "double"), "encoding: raw\n", "encoding: ascii\ndata file: v.txt\n"));
+  ASSERT_TRUE(text) << text.error().message;
+  EXPECT_EQ(text->values[11], 11);
+}
+
 TEST(NrrdFile, WithoutAPatientSpaceIsRefusedUntilTold) {
   const TemporaryFolder folder;
   const std::string unstated =
@@ -216,6 +257,20 @@ TEST(MetaImageFile, DetachedAndCompressedVoxels) {
   ASSERT_TRUE(volume) << volume.error().message;
   EXPECT_EQ(volume->values[11], 11);
   expect_refused(read(folder, "v.mhd", replaced(header, "v.zraw", "gone.raw")), "its voxels are missing");
+}
+
+TEST(MetaImageFile, NoiseIsNoShorterPackedAndIsUnpackedAllTheSame) {
+  const TemporaryFolder folder;
+  std::string packed(64, '\0');
+  uLongf size = packed.size();
+  ASSERT_EQ(compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+                     reinterpret_cast<const Bytef*>(big_shorts().data()), 24),
+            Z_OK);
+  packed.resize(std::max<std::size_t>(size, 24), 'x');
+  const auto volume =
+      read(folder, "v.mha", replaced(kMeta, "CompressedData = False", "CompressedData = True") + packed);
+  ASSERT_TRUE(volume) << volume.error().message;
+  EXPECT_EQ(volume->values[11], 11);
 }
 
 TEST(MetaImageFile, WithoutAMatrixIsRefusedUntilTold) {
