@@ -21,6 +21,8 @@ class EmulatorPort {
   /// Sleeps until the client sent something or `time` is over; at most a few milliseconds where no client is
   /// there.
   virtual void wait(Nanos time) = 0;
+  /// Whether a client came in since this was asked last; false where that cannot be told.
+  virtual bool take_arrival() { return false; }
   /// 0 where there is nothing, or nobody.
   virtual std::size_t read(std::span<std::byte> into) = 0;
   virtual void write(std::span<const std::byte> bytes) = 0;

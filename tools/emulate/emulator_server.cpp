@@ -16,6 +16,7 @@ void EmulatorServer::step(Nanos longest) {
   port_.wait(std::clamp(until_reply, Nanos{0}, longest));
   const Instant now = clock_.now();
   watch_for_break(now);
+  if (port_.take_arrival()) device_.change_host(now);
   while (const std::size_t count = port_.read(buffer_)) {
     device_.receive(std::span{buffer_}.first(count), now);
     bytes_received_ += count;

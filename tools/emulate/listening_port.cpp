@@ -6,6 +6,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include <array>
 #include <cerrno>
 
 namespace orcart {
@@ -13,9 +14,17 @@ namespace orcart {
 void ListeningPort::wait(Nanos time) {
   const timespec timeout{.tv_sec = time / 1s, .tv_nsec = (time % 1s).count()};
   // A negative descriptor is passed over: while the cable is out this only sleeps.
-  pollfd watched{.fd = client_.valid() ? client_.get() : listener_.get(), .events = POLLIN, .revents = 0};
-  ::ppoll(&watched, 1, &timeout, nullptr);
-  if (!client_.valid() && (watched.revents & POLLIN) != 0) admit();
+  std::array<pollfd, 2> watched{pollfd{.fd = client_.get(), .events = POLLIN | POLLRDHUP, .revents = 0},
+                                pollfd{.fd = listener_.get(), .events = POLLIN, .revents = 0}};
+  ::ppoll(watched.data(), watched.size(), &timeout, nullptr);
+  if ((watched[1].revents & POLLIN) == 0) return;
+  if (!client_.valid()) return admit();
+  // One that has hung up is read to its end first; the next waits at the door meanwhile.
+  if ((watched[0].revents & (POLLRDHUP | POLLHUP | POLLERR)) == 0) turn_away();
+}
+
+void ListeningPort::turn_away() {
+  const FileDescriptor second(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
 }
 
 std::size_t ListeningPort::read(std::span<std::byte> into) {
@@ -41,6 +50,7 @@ void ListeningPort::mend() {
 
 void ListeningPort::admit() {
   client_ = FileDescriptor(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  arrived_ = client_.valid();
   const int on = 1;
   // Refused on a local socket, which holds nothing back.
   if (client_.valid()) ::setsockopt(client_.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);

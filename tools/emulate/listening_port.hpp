@@ -3,12 +3,14 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "tools/emulate/emulator_port.hpp"
 
 namespace orcart {
 
-/// Serves one client of a socket that listens already. One thread.
+/// Serves one client of a socket that listens already; a second one is let in and put out at once, so that it
+/// need not wait for an answer. One thread.
 class ListeningPort final : public EmulatorPort {
  public:
   /// `again` listens at the same place once more, after the cable was out.
@@ -18,6 +20,7 @@ class ListeningPort final : public EmulatorPort {
 
   const std::string& name() const override { return name_; }
   void wait(Nanos time) override;
+  bool take_arrival() override { return std::exchange(arrived_, false); }
   std::size_t read(std::span<std::byte> into) override;
   void write(std::span<const std::byte> bytes) override;
   std::uint32_t baud() override { return 0; }
@@ -26,11 +29,13 @@ class ListeningPort final : public EmulatorPort {
 
  private:
   void admit();
+  void turn_away();
 
   FileDescriptor listener_;
   FileDescriptor client_;
   std::string name_;
   Listen again_;
+  bool arrived_ = false;
 };
 
 }  // namespace orcart

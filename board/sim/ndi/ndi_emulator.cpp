@@ -185,6 +185,12 @@ void NdiEmulator::catch_up(Instant now) noexcept {
   if (now >= switch_at_) baud_ = next_baud_;
 }
 
+void NdiEmulator::change_host(Instant now) noexcept {
+  line_size_ = 0;
+  line_too_long_ = false;
+  discard(now);
+}
+
 void NdiEmulator::receive_break(Instant now) noexcept {
   restart(now);
 }

@@ -51,6 +51,9 @@ class NdiEmulator {
   void receive(std::span<const std::byte> bytes, Instant now) noexcept;
   /// What arrives while host and device use different line rates: the device can make nothing of it.
   void receive_noise() noexcept { line_size_ = 0; }
+  /// Another host has taken the line: what the one before began to say, and has not read, is none of its
+  /// business.
+  void change_host(Instant now) noexcept;
   /// A serial break, or power switched off and on.
   void receive_break(Instant now) noexcept;
   /// Takes the reply bytes that have arrived at the host by `now`.

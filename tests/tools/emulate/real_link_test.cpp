@@ -1,9 +1,13 @@
 // The Linux links against the emulated tracker behind a real pseudo-terminal and a real TCP port.
+#include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
+#include <string>
 #include <thread>
 
 #include "board/linux/tcp_link.hpp"
@@ -103,6 +107,64 @@ TEST(RealLinks, CarryTheDriverOverAPseudoTerminal) {
 TEST(RealLinks, CarryTheDriverOverTcp) {
   TcpRig rig;
   EXPECT_EQ(frames_over(rig.link(), 0), 20);
+}
+
+/// A client that knows nothing of NDI: bytes out, and what comes back within a second or until a carriage
+/// return.
+class PlainClient {
+ public:
+  explicit PlainClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval second{.tv_sec = 1, .tv_usec = 0};
+    ::setsockopt(socket_.get(), SOL_SOCKET, SO_RCVTIMEO, &second, sizeof second);
+    connected = ::connect(socket_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+  }
+  void say(const std::string& bytes) { ::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL); }
+  /// "gone" where the other side hung up.
+  std::string answer() {
+    std::string all;
+    char byte = 0;
+    for (;;) {
+      const ssize_t count = ::recv(socket_.get(), &byte, 1, 0);
+      if (count == 0 || (count < 0 && errno == ECONNRESET)) return "gone";
+      if (count < 0 || byte == '\r') return all;
+      all += byte;
+    }
+  }
+  bool connected = false;
+
+ private:
+  FileDescriptor socket_;
+};
+
+TEST(RealLinks, TheNextClientInheritsNothing) {
+  const ServedTracker served(open_tcp_port({.port = 0}).value());
+  const auto port = static_cast<std::uint16_t>(std::stoi(served.name.substr(served.name.find(':') + 1)));
+  {
+    PlainClient first(port);
+    first.say("INIT \r");
+    EXPECT_EQ(first.answer().substr(0, 4), "OKAY");
+    first.say("VER 4");  // and hangs up in the middle of a word
+  }
+  PlainClient second(port);
+  second.say("INIT \r");
+  EXPECT_EQ(second.answer().substr(0, 4), "OKAY");
+}
+
+TEST(RealLinks, ASecondClientIsPutOutAtOnceAndTheFirstGoesOn) {
+  const ServedTracker served(open_tcp_port({.port = 0}).value());
+  const auto port = static_cast<std::uint16_t>(std::stoi(served.name.substr(served.name.find(':') + 1)));
+  PlainClient first(port);
+  first.say("INIT \r");
+  EXPECT_EQ(first.answer().substr(0, 4), "OKAY");
+  PlainClient second(port);
+  EXPECT_TRUE(second.connected);
+  EXPECT_EQ(second.answer(), "gone");
+  first.say("INIT \r");
+  EXPECT_EQ(first.answer().substr(0, 4), "OKAY");
 }
 
 /// Serves an emulator whose cable is out from half a second to one second after its start.
