@@ -20,6 +20,8 @@ constexpr const char* kExample =
     "there --stylus and\n"
     "--reference name the two ends of the transform, StylusToTracker unless told.";
 
+constexpr double kLargestRms_mm = 10;  ///< beyond it the tip was not in one place
+
 struct Arguments {
   std::string poses, out, page, name = "pointer";
   StylusNames names{.reference = "Tracker"};
@@ -74,6 +76,12 @@ Result<void> run(const Arguments& arguments) {
   for (const std::string& note : poses->notes) std::fprintf(stderr, "note: %s\n", note.c_str());
   const auto fit = fit_pivot(poses->poses);
   if (!fit) return fail(arguments.poses + ": " + fit.error().message);
+  if (fit->robust.rms_mm > kLargestRms_mm)
+    return fail(
+        arguments.poses +
+        json::format(": even the poses that agree lie %.1f mm RMS from one tip; a pointer whose tip stands "
+                     "still while it is tilted is accepted",
+                     fit->robust.rms_mm));
   if (!arguments.page.empty())
     if (auto written = write_whole_file(arguments.page, pivot_page(poses->poses, *fit, answer(*fit, false)));
         !written)

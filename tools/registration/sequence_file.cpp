@@ -130,10 +130,13 @@ Result<std::vector<NamedPose>> stylus_poses(const SequenceFile& sequence, const 
     if (const auto X = stylus_pose(sequence.frames[i], names))
       poses.push_back({.name = std::to_string(i),
                        .X_TS = {.rotation = X->rotation, .translation_mm = X->translation_mm}});
+  const std::string across = names.reference == "Tracker"
+                                 ? ""
+                                 : ", or " + names.stylus + "ToTracker and " + names.reference + "ToTracker,";
   if (poses.empty())
-    return fail("no frame of the recording holds " + names.stylus + "To" + names.reference + ", or " +
-                names.stylus + "ToTracker and " + names.reference + "ToTracker, with status OK; it holds " +
-                names_in(sequence) + ", which --stylus and --reference may name");
+    return fail("no frame of the recording holds " + names.stylus + "To" + names.reference + across +
+                " with status OK; it holds " + names_in(sequence) +
+                ", which --stylus and --reference may name");
   return poses;
 }
 
