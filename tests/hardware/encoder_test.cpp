@@ -1,6 +1,9 @@
 // The rotary encoder on the kernel's own evdev: the seam's contract, a queue that overflows, a knob that is
-// pulled out and put back. Knobs are made by uinput.
+// pulled out and put back. Knobs are made by uinput, or are two lines of gpio-sim under the driver
+// rotary-encoder.
 #include <algorithm>
+#include <array>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -188,6 +191,152 @@ TEST_F(Encoder, IsListed) {
   ASSERT_NE(found, all.end());
   EXPECT_EQ(found->name, "orcart test knob");
   EXPECT_EQ(found->axes, std::vector<std::string>{"rel_dial"});
+}
+
+/// The two contacts of a knob under the kernel's driver rotary-encoder, moved by gpio-sim's pulls.
+class PulledKnob {
+ public:
+  PulledKnob() {
+    const auto lines = device_named("ORCART_TEST_ENCODER_LINES"),
+               folder = device_named("ORCART_TEST_GPIO_SIM");
+    if (!lines || !folder) return;
+    const std::size_t colon = lines->find(':');
+    for (const std::string& line : {lines->substr(0, colon), lines->substr(colon + 1)})
+      pulls_.push_back(*folder + "/sim_gpio" + line + "/pull");
+  }
+  bool there() const { return !pulls_.empty(); }
+  /// One count up or down: one contact opens or closes.
+  void step(int way) {
+    constexpr std::array<std::array<int, 2>, 4> kGray{{{0, 0}, {0, 1}, {1, 1}, {1, 0}}};
+    place_ = (place_ + way + 4) % 4;
+    for (std::size_t i = 0; i < pulls_.size(); ++i)
+      std::ofstream(pulls_[i]) << (kGray[static_cast<std::size_t>(place_)][i] != 0 ? "pull-up" : "pull-down");
+  }
+
+ private:
+  std::vector<std::string> pulls_;
+  int place_ = 0;
+};
+
+class RotaryEncoderDriver : public ::testing::Test {
+ protected:
+  static constexpr const char* kDriver = "/sys/bus/platform/drivers/rotary-encoder/";
+
+  void SetUp() override {
+    const auto named = device_named("ORCART_TEST_ENCODER");
+    if (!named) GTEST_SKIP() << not_set("ORCART_TEST_ENCODER");
+    if (!knob.there()) GTEST_SKIP() << not_set("ORCART_TEST_ENCODER_LINES");
+    device = *named;
+  }
+  void TearDown() override {
+    while (at_ != 0) turn(at_ > 0 ? -1 : 1);
+  }
+  void turn(int way) {
+    knob.step(way);
+    at_ += way;
+  }
+  std::unique_ptr<EvdevEncoder> opened(const std::string& node) {
+    auto made = EvdevEncoder::open({.device = node}, clock);
+    EXPECT_TRUE(made) << made.error().message;
+    return made ? std::move(*made) : nullptr;
+  }
+  /// The next reading; nothing for a second is a failure.
+  EncoderReading next(EvdevEncoder& encoder) {
+    const Instant end = clock.now() + 1s;
+    auto reading = encoder.take_reading();
+    while (!reading && clock.now() < end) {
+      clock.sleep_until(clock.now() + 1ms);
+      reading = encoder.take_reading();
+    }
+    EXPECT_TRUE(reading) << "no count came";
+    return reading ? *reading : EncoderReading{};
+  }
+
+  std::string device;
+  PulledKnob knob;
+  RealClock clock;
+
+ private:
+  int at_ = 0;  ///< counts from where it stood; it is left there
+};
+
+TEST_F(RotaryEncoderDriver, CountsEachEdgeEitherWayAndStampsIt) {
+  const auto encoder = opened(device);
+  ASSERT_TRUE(encoder);
+  const EncoderReading first = next(*encoder);
+  std::int64_t counts = first.counts;
+  for (const int way : {1, -1}) {
+    for (int i = 0; i < (way > 0 ? 150 : 250); ++i) {
+      const Instant before = clock.now();
+      turn(way);
+      const EncoderReading reading = next(*encoder);
+      ASSERT_EQ(reading.counts, counts += way);
+      EXPECT_GE(reading.at, before);
+      EXPECT_LE(reading.at, clock.now());
+      EXPECT_EQ(reading.run, first.run);
+    }
+  }
+}
+
+TEST_F(RotaryEncoderDriver, EndsWhereAContactThatBouncedCameToRest) {
+  const auto encoder = opened(device);
+  ASSERT_TRUE(encoder);
+  const std::int64_t from = next(*encoder).counts;
+  turn(1);
+  for (int i = 0; i < 15; ++i) {
+    turn(-1);
+    turn(1);
+  }
+  std::int64_t last = from;
+  for (const Instant end = clock.now() + 500ms; clock.now() < end; clock.sleep_until(clock.now() + 5ms))
+    while (const auto reading = encoder->take_reading()) last = reading->counts;
+  EXPECT_EQ(last, from + 1);
+}
+
+TEST_F(RotaryEncoderDriver, IsListed) {
+  const auto all = encoders();
+  const auto found = std::ranges::find(all, device, &EncoderFacts::path);
+  ASSERT_NE(found, all.end());
+  EXPECT_EQ(found->name, "rotary-encoder");
+  EXPECT_EQ(found->axes, std::vector<std::string>{"rel_dial"});
+}
+
+TEST_F(RotaryEncoderDriver, IsNoticedWhenItLetsGoAndFoundAgainWithANewRun) {
+  const std::string name = "/dev/input/orcart-test-rotary";
+  const auto tie = [&] {
+    std::error_code error;
+    std::filesystem::remove(name);
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(
+             "/sys/bus/platform/devices/rotary-encoder/input", error))
+      if (const auto node = entry.path().filename().string(); node.starts_with("event"))
+        std::filesystem::create_symlink("/dev/input/" + node, name);
+  };
+  tie();
+  const auto encoder = opened(name);
+  ASSERT_TRUE(encoder);
+  const EncoderReading first = next(*encoder);
+  std::ofstream(std::string(kDriver) + "unbind") << "rotary-encoder" << std::flush;
+  const Instant patience = clock.now() + 5s;
+  auto gone = encoder->take_reading();
+  while ((gone || gone.error() != PortFault::disconnected) && clock.now() < patience) {
+    clock.sleep_until(clock.now() + 5ms);
+    gone = encoder->take_reading();
+  }
+  ASSERT_FALSE(gone);
+  EXPECT_EQ(gone.error(), PortFault::disconnected);
+  std::ofstream(std::string(kDriver) + "bind") << "rotary-encoder" << std::flush;
+  EncoderReading back;
+  for (bool found = false; !found && clock.now() < patience;) {
+    tie();
+    clock.sleep_until(clock.now() + EvdevEncoder::kRetry);
+    if (const auto reading = encoder->take_reading()) back = *reading, found = true;
+  }
+  std::filesystem::remove(name);
+  ASSERT_NE(back.run, first.run);
+  turn(1);
+  const EncoderReading step = next(*encoder);
+  EXPECT_EQ(step.counts - back.counts, 1);
+  EXPECT_EQ(step.run, back.run);
 }
 
 }  // namespace

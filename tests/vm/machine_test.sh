@@ -29,6 +29,7 @@ unplugs_and_replugs() {
 [ "${1:-}" != rt ] || expect "the kernel is PREEMPT_RT" test "$(cat /sys/kernel/realtime)" = 1
 expect "gpio-sim's chip is there" test -c "${ORCART_TEST_GPIO%%:*}"
 expect "a pull moves its line" pull_moves_the_line
+expect "a rotary encoder is driven by rotary-encoder" grep -q '"rotary-encoder"' /proc/bus/input/devices
 expect "vivid is there" grep -q vivid "/sys/class/video4linux/${ORCART_TEST_CAMERA##*/}/name"
 expect "v4l2loopback is there" grep -q endoscope "/sys/class/video4linux/${ORCART_VM_CAMERA##*/}/name"
 expect "the screen is driven by bochs-drm" test "$(driver_of_card card0)" = bochs-drm

@@ -1,6 +1,6 @@
 # Shell helpers of board/vm/run: the host's side of the guest's devices, and what the guest may ask for while it runs.
 
-VM_DEVICES='gpio tracker tracker_here usb_gadget vivid camera screen vkms uinput keyboard'
+VM_DEVICES='gpio encoder tracker tracker_here usb_gadget vivid camera screen vkms uinput keyboard'
 
 # device_arguments NAME: adds to `machine`, the arguments of QEMU. Devices that are modules only need none.
 device_arguments() {
@@ -18,7 +18,7 @@ device_arguments() {
       ;;
     keyboard) add_usb && machine+=(-device usb-kbd,id=keyboard) ;;
     screen) machine+=(-device VGA,vgamem_mb=32,edid=on,xres=1280,yres=800) ;;
-    gpio | usb_gadget | vivid | camera | vkms | uinput) ;;
+    gpio | encoder | usb_gadget | vivid | camera | vkms | uinput) ;;
     *) fail "there is no device $1; there are $VM_DEVICES" ;;
   esac
 }

@@ -13,7 +13,7 @@ kernel_release() {
 cached_releases() { find "$VM_CACHE" -mindepth 2 -maxdepth 2 -name ready -printf '%h\n' 2>/dev/null | sed 's|.*/||'; }
 
 # How it is laid out and what is built here out of tree: a change of either makes the kernel be set up again.
-recipe() { { echo layout 2 && cat "$VM_DIR/lib/modules.sh"; } | sha256sum | cut -c 1-16; }
+recipe() { { echo layout 2 && cat "$VM_DIR/lib/modules.sh" "$VM_DIR"/drivers/*; } | sha256sum | cut -c 1-16; }
 
 # set_up_kernel FLAVOUR: prints the folder with vmlinux, initramfs and lib/modules; made where it is not there yet.
 set_up_kernel() {
@@ -75,7 +75,7 @@ unpack_sources() { # RELEASE
   mkdir sources
   tar -C sources --strip-components=1 -I 'xz -T0' -xf usr/src/linux-source-6.1.tar.xz --wildcards \
     'linux-source-6.1/scripts/extract-vmlinux' 'linux-source-6.1/drivers/gpio/gpio-sim.c' \
-    'linux-source-6.1/drivers/gpio/*.h' 'linux-source-6.1/kernel/irq/irq_sim.c' 'linux-source-6.1/drivers/gpu/drm/vkms/*'
+    'linux-source-6.1/drivers/gpio/*.h' 'linux-source-6.1/drivers/input/misc/rotary_encoder.c' 'linux-source-6.1/kernel/irq/irq_sim.c' 'linux-source-6.1/drivers/gpu/drm/vkms/*'
   # Debian's headers name their other half by its place in an installed system.
   find usr/src usr/lib -type f \( -name Makefile -o -name '.kernelvariables' \) -exec \
     sed -i "s|/usr/src/linux-headers|$PWD/usr/src/linux-headers|g; s|/usr/lib/linux-kbuild|$PWD/usr/lib/linux-kbuild|g" {} +
