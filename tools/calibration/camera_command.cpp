@@ -8,12 +8,12 @@
 #include <future>
 #include <mutex>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "tools/calibration/camera_checks.hpp"
 #include "tools/calibration/fall_off_fit.hpp"
 #include "tools/calibration/hand_eye.hpp"
+#include "tools/calibration/load_picture.hpp"
 #include "tools/registration/json_text.hpp"
 
 namespace orcart {
@@ -146,7 +146,7 @@ Result<SeenPictures> see_boards(const std::vector<std::filesystem::path>& images
   std::mutex telling;
   const auto work = [&] {
     for (std::size_t i = next++; i < images.size(); i = next++) {
-      seen.pictures[i] = cv::imread(images[i].string(), cv::IMREAD_COLOR);
+      seen.pictures[i] = load_picture(images[i]);
       if (!seen.pictures[i].empty()) seen.views[i] = find_board(seen.pictures[i], pattern);
       seen.views[i].image = images[i];
       const std::lock_guard lock(telling);

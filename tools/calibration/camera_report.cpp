@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "firmware-host/files/lens_rows.hpp"
+#include "tools/calibration/load_picture.hpp"
 #include "tools/registration/json_text.hpp"
 #include "tools/registration/report_page.hpp"
 
@@ -49,7 +50,7 @@ cv::Point whole(const Eigen::Vector2d& p) {
 
 /// The picture with the corners found, residuals twenty times as long, and the mask.
 cv::Mat drawn(const CameraCalibration& c, std::size_t view) {
-  cv::Mat picture = cv::imread(c.views[view].image.string(), cv::IMREAD_COLOR);
+  cv::Mat picture = load_picture(c.views[view].image);
   const int thick = std::max(1, picture.cols / 700);
   for (const BoardCorner& corner : c.views[view].corners) {
     cv::circle(picture, whole(corner.pixel_px), 4 * thick, {60, 200, 60}, thick, cv::LINE_AA);

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "tools/calibration/find_board.hpp"
+#include "tools/calibration/lattice_sides.hpp"
 
 namespace orcart {
 namespace {
@@ -96,6 +97,7 @@ BoardView find_dots(const cv::Mat& picture, const Pattern& pattern) {
     view.remark = "no grid of dots is seen";
     return view;
   }
+  count_along_sides(best, grey.size());
   refine(grey, best_sign, best);
   const LatticeSize seen = size_of(best);
   view.columns = seen.columns, view.rows = seen.rows;

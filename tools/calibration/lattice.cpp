@@ -257,20 +257,29 @@ Lattice turned(const Lattice& lattice, int quarter_turns) {
 }
 
 Lattice grow_lattice(const std::vector<LatticePoint>& points, std::size_t enough) {
-  constexpr std::size_t kMostSeeds = 400;
+  constexpr std::size_t kMostSeeds = 400, kMostTorn = 24;
   Growth growth(points);
   Lattice best;
   std::set<std::pair<double, double>> covered;
-  std::size_t tried = 0;
+  std::size_t tried = 0, torn = 0;
+  bool whole = false;  // of the best
   for (std::size_t seed = 0; seed < points.size() && tried < kMostSeeds; ++seed) {
     if (covered.contains({points[seed].pixel_px.x(), points[seed].pixel_px.y()})) continue;
     ++tried;
     Lattice lattice = growth.from(seed);
     if (lattice.size() < 9) continue;
-    for (const auto& [place, pixel] : lattice) covered.insert({pixel.x(), pixel.y()});
+    const Lattice grown = lattice;
     prune(lattice);
-    if (lattice.size() > best.size()) best = std::move(lattice);
-    if (best.size() >= enough || 2 * best.size() > points.size()) break;
+    // A seed whose ring was wrong grows a lattice that is torn where its two halves meet; another may grow it
+    // whole.
+    const bool sound = 20 * (grown.size() - lattice.size()) <= grown.size();
+    if (sound || ++torn > kMostTorn)
+      for (const auto& [place, pixel] : grown) covered.insert({pixel.x(), pixel.y()});
+    if (lattice.size() > best.size()) {
+      best = std::move(lattice);
+      whole = sound;
+    }
+    if (best.size() >= enough || (whole && 2 * best.size() > points.size())) break;
   }
   const LatticeSize size = size_of(best);
   return size.columns >= 3 && size.rows >= 3 ? best : Lattice{};

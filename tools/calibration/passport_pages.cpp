@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "tools/calibration/camera_report.hpp"
 #include "tools/calibration/hand_eye_command.hpp"
+#include "tools/calibration/load_picture.hpp"
 #include "tools/calibration/medium.hpp"
 #include "tools/calibration/tip.hpp"
 #include "tools/registration/json_text.hpp"
@@ -28,8 +28,7 @@ cv::Point whole(const Eigen::Vector2d& p) {
 /// The picture with its corners, and lines to where tracker and hand-eye place them.
 cv::Mat placed_corners(const HandEyeView& view, const HandEyeFit& fit) {
   cv::Mat picture, small;
-  if (std::filesystem::exists(view.board.image))
-    picture = cv::imread(view.board.image.string(), cv::IMREAD_COLOR);
+  if (std::filesystem::exists(view.board.image)) picture = load_picture(view.board.image);
   if (picture.empty()) return {16, 16, CV_8UC3, cv::Scalar::all(128)};  // taken away meanwhile
   const int thick = std::max(1, picture.cols / 700);
   const Pose<C, B> X_CB = (view.X_TS * fit.X_SC).inverse() * fit.X_TB;

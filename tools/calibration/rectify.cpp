@@ -1,5 +1,6 @@
 // One look-up table for all pictures: each pixel of the pinhole picture is asked of the lens.
 #include "tools/calibration/rectify.hpp"
+#include "tools/calibration/load_picture.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -27,7 +28,7 @@ Result<void> rectify(const std::vector<std::filesystem::path>& images, const Sco
                      const std::filesystem::path& folder) {
   std::vector<cv::Mat> pictures;
   for (const auto& image : images) {
-    pictures.push_back(cv::imread(image.string(), cv::IMREAD_COLOR));
+    pictures.push_back(load_picture(image));
     if (pictures.back().empty())
       return fail(image.string() + ": cannot be read as a picture; PNG, JPEG, TIFF and BMP are accepted");
     if (pictures.back().cols != scope.width_px || pictures.back().rows != scope.height_px)

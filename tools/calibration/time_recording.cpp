@@ -6,7 +6,6 @@
 #include <memory>
 #include <mutex>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "firmware-host/files/scope_file.hpp"
@@ -14,6 +13,7 @@
 #include "firmware-host/files/whole_file.hpp"
 #include "firmware-host/session/session_reader.hpp"
 #include "realtime/optics/scope_turn.hpp"
+#include "tools/calibration/load_picture.hpp"
 #include "tools/registration/json_text.hpp"
 #include "tools/registration/poses_file.hpp"
 
@@ -157,8 +157,7 @@ Result<TimeRecording> read_folder(const std::filesystem::path& folder,
   for (const FrameRow& row : *frames) recording.frames_at_s.push_back(row.at_s);
   recording.picture = [rows = std::move(*frames)](std::size_t frame) -> Result<cv::Mat> {
     cv::Mat picture;
-    if (std::filesystem::exists(rows[frame].image))
-      picture = cv::imread(rows[frame].image.string(), cv::IMREAD_COLOR);
+    if (std::filesystem::exists(rows[frame].image)) picture = load_picture(rows[frame].image);
     if (picture.empty())
       return fail(rows[frame].image.string() +
                   ": cannot be read as a picture; PNG, JPEG, TIFF and BMP are accepted");

@@ -4,10 +4,9 @@
 #include <memory>
 #include <numbers>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "firmware-host/files/scope_file.hpp"
 #include "firmware-host/files/whole_file.hpp"
+#include "tools/calibration/load_picture.hpp"
 #include "tools/calibration/turning.hpp"
 #include "tools/orcart/verbs.hpp"
 #include "tools/registration/json_text.hpp"
@@ -71,7 +70,7 @@ Result<void> tell(const TurnArguments& arguments) {
   std::vector<std::string> answers;
   std::string text;
   for (const auto& image : arguments.images) {
-    const cv::Mat picture = cv::imread(image.string(), cv::IMREAD_COLOR);
+    const cv::Mat picture = load_picture(image);
     if (picture.cols != scope->width_px || picture.rows != scope->height_px)
       return fail(image.string() + json::format(": %dx%d px; a picture of the scope's %dx%d is accepted",
                                                 picture.cols, picture.rows, scope->width_px,
