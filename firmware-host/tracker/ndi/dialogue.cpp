@@ -239,7 +239,8 @@ Result<Dialogue> parse_dialogue(std::string_view content, std::string_view name)
 
 Result<Dialogue> read_dialogue(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) return fail("dialogue " + file.string() + " cannot be opened; a readable file is wanted");
+  if (!in || std::filesystem::is_directory(file))  // which opens all the same
+    return fail("dialogue " + file.string() + " cannot be opened; a readable file is wanted");
   const std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   if (in.bad()) return fail("dialogue " + file.string() + " cannot be read; a readable file is wanted");
   return parse_dialogue(content, file.string());

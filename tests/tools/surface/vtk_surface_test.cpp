@@ -56,6 +56,16 @@ TEST(VtkSurface, OneThatStatesNoSpaceIsRefusedUntilTold) {
   EXPECT_TRUE(read_vtk_surface(file, nullptr, Space::lps));
 }
 
+TEST(VtkSurface, OneThatIsCutShortIsRefused) {
+  const TemporaryFolder folder;
+  const std::string whole = tetrahedron_vtk("3D Slicer output. SPACE=LPS");
+  for (const std::size_t missing : {4, 9, 20, 45, 70}) {
+    const auto surface = read_vtk_surface(folder.write("a.vtk", whole.substr(0, whole.size() - missing)),
+                                          nullptr, std::nullopt);
+    EXPECT_FALSE(surface) << missing;
+  }
+}
+
 TEST(VtkSurface, GarbageAndPicturesAreRefused) {
   const TemporaryFolder folder;
   for (const char* name : {"a.vtk", "a.vtp"})

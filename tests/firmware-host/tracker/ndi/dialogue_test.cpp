@@ -132,5 +132,11 @@ TEST(DialogueFigures, CountCommandsRepliesAndWhatTheySay) {
   EXPECT_EQ(figures.remarks.size(), 4u);
 }
 
+TEST(Dialogue, AFolderIsRefusedInASentence) {
+  const auto dialogue = read_dialogue(std::filesystem::temp_directory_path());
+  ASSERT_FALSE(dialogue);
+  EXPECT_NE(dialogue.error().message.find("a readable file is wanted"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace orcart::ndi
