@@ -2,6 +2,7 @@
 // backward.
 #include "firmware-host/app/cart.hpp"
 
+#include "firmware-host/app/turn_deviation.hpp"
 #include "firmware-host/stages/camera_stage.hpp"
 #include "firmware-host/stages/encoder_stage.hpp"
 #include "firmware-host/stages/mapper_stage.hpp"
@@ -116,19 +117,13 @@ Result<void> Cart::State::build_painting() {
 ChainErrors Cart::State::chain_errors(const NdiSettings& driven) const {
   const RegistrationFile& registration = setup.patient.registration;
   const std::optional<Turning>& turning = setup.patient.scope.turning;
-  const bool by_markers = turning && setup.config.turn == TurnSource::marker;
-  const double light_post_rad =
-      by_markers ? marked_turn_deviation_rad(*turning, ndi::markers_of(driven.tools[0].definition),
-                                             ndi::markers_of(driven.tools[2].definition),
-                                             setup.config.marker_rms_mm())
-                 : kAssumedErrors.light_post_rad;
   return {.marker_rms_mm = setup.config.marker_rms_mm(),
           .scope_markers_mm = ndi::markers_of(driven.tools[0].definition),
           .reference_markers_mm = ndi::markers_of(driven.tools[1].definition),
           .registration = registration.covariance,
           .registration_mm = registration.predicted_tre_mm,
           .time_s = setup.config.time_deviation_s.value_or(kAssumedErrors.time_s),
-          .light_post_rad = turning ? light_post_rad : 0,
+          .light_post_rad = turning ? turn_deviation_rad(setup.config, *turning, driven) : 0,
           .texel_mm = setup.patient.layout.texel_mm};
 }
 

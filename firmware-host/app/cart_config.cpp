@@ -34,6 +34,9 @@ void read_files(TomlReader& reader, CartConfig& config) {
       scope.refuse("turn_deg",
                    "stands beside turn = \"marker\" or \"notch\"; a turn is either told or followed");
   }
+  if (scope.has("turn_deviation_deg"))
+    config.turn_deviation_rad =
+        scope.number("turn_deviation_deg", {.min = 0, .max = 20}) * std::numbers::pi / 180;
   config.passport.most_residual_px =
       scope.number("most_residual_px", {.min = 0.01, .max = 50, .fallback = 1.0});
   config.passport.most_residual_mm =

@@ -40,6 +40,8 @@ struct CartConfig {
   /// Of the light post since the passport was made, for the whole run or at the start of an encoder's;
   /// nothing: not said.
   std::optional<double> turn_rad;
+  std::optional<double>
+      turn_deviation_rad;  ///< standard deviation of the turn, however it is known; not told
   double most_mismatch_rad =
       2 * std::numbers::pi / 180;  ///< between the turn and the notch, where both are there
   SeenFrom seen_from = SeenFrom::outside;

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "firmware-host/app/turn_deviation.hpp"
 #include "firmware-host/files/whole_file.hpp"
 
 namespace orcart {
@@ -36,6 +37,14 @@ SessionBudget kept_budget(const StageLedger& ledger) {
           .misses = ledger.over_bound()};
 }
 
+/// As the cart reckons with it; nothing of a scope that does not turn.
+Result<std::optional<double>> turn_deviation_of(const CartConfig& config, const ScopeModel& scope) {
+  if (!scope.turning) return std::nullopt;
+  const auto tracker = settings_of(config.tracker);
+  if (!tracker) return tl::unexpected(tracker.error());
+  return turn_deviation_rad(config, *scope.turning, *tracker);
+}
+
 std::string captures(std::uint64_t count) {
   return std::to_string(count) + (count == 1 ? " capture" : " captures");
 }
@@ -52,6 +61,8 @@ Result<std::unique_ptr<KeptSession>> KeptSession::create(const Request& request)
   if (!registration) return tl::unexpected(registration.error());
   std::optional<Nanos> deviation;
   if (config.time_deviation_s) deviation = from_seconds(*config.time_deviation_s);
+  const auto turn_deviation = turn_deviation_of(config, request.patient.scope);
+  if (!turn_deviation) return tl::unexpected(turn_deviation.error());
   auto writer = SessionWriter::create(
       request.file, {.application_version = ORCART_VERSION,
                      .config_hash = hash_of(*cart),
@@ -59,7 +70,8 @@ Result<std::unique_ptr<KeptSession>> KeptSession::create(const Request& request)
                      .started_at = request.started_at,
                      .tracker_against_video = config.tracker_against_video,
                      .tracker_against_video_deviation = deviation,
-                     .turn_rad = config.turn == TurnSource::told ? config.turn_rad.value_or(0) : 0});
+                     .turn_rad = config.turn == TurnSource::told ? config.turn_rad.value_or(0) : 0,
+                     .turn_deviation_rad = *turn_deviation});
   if (!writer) return tl::unexpected(writer.error());
   const auto picture_bytes =
       packed_bytes(config.camera.format, config.camera.width_px, config.camera.height_px);

@@ -38,11 +38,10 @@ Result<void> turn_scope(const CartConfig& config, Patient& patient) {
     return check_followed(config, patient.scope);
   }
   if (!patient.scope.turning) {
-    if (!config.turn_rad) return {};
-    return fail(
-        config.scope.string() +
-        ": the passport has no [turning], so [scope] turn_deg means nothing; run orcart calibrate turn, "
-        "or remove turn_deg");
+    if (!config.turn_rad && !config.turn_deviation_rad) return {};
+    const std::string key = config.turn_rad ? "turn_deg" : "turn_deviation_deg";
+    return fail(config.scope.string() + ": the passport has no [turning], so [scope] " + key +
+                " means nothing; run orcart calibrate turn, or remove " + key);
   }
   if (!config.turn_rad && patient.painting_blocked.empty()) patient.painting_blocked = kSayIt;
   patient.scope = turned(patient.scope, config.turn_rad.value_or(0));

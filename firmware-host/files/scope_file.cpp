@@ -117,6 +117,8 @@ void read_turning(const TomlSection& section, ScopeModel& scope) {
   if (centre.size() == 2) turning.centre_px = {centre[0], centre[1]};
   turning.centre_deviation_px =
       section.number("centre_deviation_px", {.min = 0, .max = 100, .fallback = 0.0});
+  if (section.has("notch_deviation_rad"))
+    turning.notch_deviation_rad = section.number("notch_deviation_rad", {.min = 0, .max = 0.35});
   turning.marker =
       section.choice_of<TurnMarker>("marker", {{"shaft", TurnMarker::shaft}, {"head", TurnMarker::head}});
   const bool on_head = turning.marker == TurnMarker::head, second = section.has("R_SL");

@@ -95,6 +95,7 @@ std::string turning_text(const Turning& turning) {
     const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = *turning.R_SL;
     out += list("R_SL", rows.data(), 9);
   }
+  if (turning.notch_deviation_rad) out += line("notch_deviation_rad", *turning.notch_deviation_rad);
   return out;
 }
 

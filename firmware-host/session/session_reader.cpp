@@ -98,6 +98,10 @@ Result<SessionMeta> SessionReader::meta() {
   const auto turn = database_.integer("SELECT value FROM meta WHERE key = 'turn_nrad'");
   if (!turn) return tl::unexpected(turn.error());
   meta.turn_rad = 1e-9 * static_cast<double>(*turn);
+  const auto turn_deviation =
+      database_.integer("SELECT COALESCE((SELECT value FROM meta WHERE key = 'turn_deviation_nrad'), -1)");
+  if (!turn_deviation) return tl::unexpected(turn_deviation.error());
+  if (*turn_deviation >= 0) meta.turn_deviation_rad = 1e-9 * static_cast<double>(*turn_deviation);
   return meta;
 }
 

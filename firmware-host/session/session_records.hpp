@@ -27,6 +27,9 @@ struct SessionMeta {
   /// Its standard deviation, where cart.toml told one.
   std::optional<Nanos> tracker_against_video_deviation;
   double turn_rad = 0;  ///< of the light post, as told before the run. To 1e-9; absent reads as 0
+  /// Standard deviation of a light post's turn, by whatever told it. To 1e-9; nothing of a scope that does
+  /// not turn, and in files from before it was kept.
+  std::optional<double> turn_deviation_rad;
 };
 
 /// What pictures were painted by. Texts are the files' own.

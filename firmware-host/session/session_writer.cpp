@@ -49,10 +49,12 @@ Result<void> write_meta(Database& database, const SessionMeta& meta) {
   if (const auto done = statement->with(std::string_view("started_ns"), meta.started_at).step(); !done)
     return tl::unexpected(done.error());
   constexpr Nanos kNotTold{-1};
-  const std::array<std::pair<std::string_view, std::int64_t>, 3> numbers{{
+  const auto nrad = [](double rad) { return std::llround(1e9 * rad); };
+  const std::array<std::pair<std::string_view, std::int64_t>, 4> numbers{{
       {"tracker_against_video_ns", meta.tracker_against_video.count()},
       {"tracker_against_video_deviation_ns", meta.tracker_against_video_deviation.value_or(kNotTold).count()},
-      {"turn_nrad", std::llround(1e9 * meta.turn_rad)},
+      {"turn_nrad", nrad(meta.turn_rad)},
+      {"turn_deviation_nrad", meta.turn_deviation_rad ? nrad(*meta.turn_deviation_rad) : kNotTold.count()},
   }};
   for (const auto& [key, value] : numbers)
     if (const auto done = statement->with(key, value).step(); !done) return tl::unexpected(done.error());

@@ -38,6 +38,8 @@ struct Turning {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of the shaft, towards the tip, in S; head, or R_SL
   Eigen::Vector3d axis_point_mm = Eigen::Vector3d::Zero();  ///< head: a point on it, in S
   std::optional<Eigen::Matrix3d> R_SL;  ///< of the second marker at turn 0; nothing: it has none
+  std::optional<double>
+      notch_deviation_rad;  ///< standard deviation of a turn by the notch; nothing: not known
 };
 
 /// The passport. Immutable after loading.

@@ -15,13 +15,14 @@
 
 #include "realtime/optics/scope_turn.hpp"
 #include "tools/registration/json_text.hpp"
+#include "tools/registration/students_t.hpp"
 
 namespace orcart {
 namespace {
 
 constexpr std::size_t kFewestPictures = 3, kFewestShared = 6;
 constexpr double kLeastRange_rad = 40 * std::numbers::pi / 180, kLargestRms_px = 1, kLeastSure_px = 1;
-constexpr double kMarkerAgrees_rad = std::numbers::pi / 180;
+constexpr double kMarkerAgrees_rad = std::numbers::pi / 180, kNormal95 = 1.96;
 
 double wrapped(double angle) {
   return std::remainder(angle, 2 * std::numbers::pi);
@@ -253,6 +254,10 @@ void set_zero(const std::vector<TurnSight>& sights, const TurningTask& task, Tur
     if (sights[k].notch_rad) squares += std::pow(wrapped(*sights[k].notch_rad - fit.turns_rad[k] - mean), 2);
   fit.notch_rms_rad = std::sqrt(squares / static_cast<double>(found));
   fit.notch_zero_rad = mean;
+  // Few pictures know their own scatter badly: as much wider as Student's 95 % is than the normal one.
+  if (found >= kFewestPictures)
+    fit.turning.notch_deviation_rad =
+        students_t(found - 1) / kNormal95 * std::sqrt(squares / static_cast<double>(found - 1));
   if (!task.passport_notch_rad) {
     fit.notes.emplace_back("the passport has no notch yet, so the first picture counts as turn 0");
     return;

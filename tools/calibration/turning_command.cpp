@@ -92,6 +92,9 @@ std::string turning_text(const TurningCalibration& c) {
   if (c.fit.notch_zero_rad)
     out += json::format("  notch at %.2f degrees at turn 0; it tells a turn to %.3f degrees RMS\n",
                         degrees(*c.fit.notch_zero_rad), degrees(c.fit.notch_rms_rad));
+  if (t.notch_deviation_rad)
+    out += json::format("  a turn by the notch is known to %.3f degrees (so many pictures allowed for)\n",
+                        degrees(*t.notch_deviation_rad));
   if (t.R_SL)
     out += json::format("second marker: its turns agree with the pictures' to %.3f degrees RMS\n",
                         degrees(c.fit.second_rms_rad));
@@ -121,6 +124,7 @@ std::string turning_json(const TurningCalibration& c) {
          ", \"second_rms_rad\": " + json::number(t.R_SL ? c.fit.second_rms_rad : NAN) +
          ",\n \"notch_zero_rad\": " + json::number(c.fit.notch_zero_rad.value_or(NAN)) +
          ", \"notch_rms_rad\": " + json::number(c.fit.notch_rms_rad) +
+         ", \"notch_deviation_rad\": " + json::number(t.notch_deviation_rad.value_or(NAN)) +
          ",\n \"pictures\": " + json::list(pictures) + ",\n \"notes\": " + json::list(notes) + "}\n";
 }
 

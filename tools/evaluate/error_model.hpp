@@ -26,8 +26,8 @@ constexpr ComponentSet only(Component component) {
   return set;
 }
 
-/// Where the time's standard deviation comes from.
-enum class TimeFrom { assumed, told, session };
+/// Where a standard deviation comes from.
+enum class ErrorFrom { assumed, told, session, passport };
 
 /// One standard deviation each, unless said otherwise. Gaussian, independent from set-up to set-up.
 struct ErrorModel {
@@ -51,7 +51,7 @@ struct ErrorModel {
   double speed_mm_s = kAssumedErrors.speed_mm_s;  ///< of the tip at a capture, in a direction of chance
   double turn_rad_s = kAssumedErrors.turn_rad_s;  ///< likewise
   double light_post_rad =
-      0;  ///< of an angled scope's turn; with_stated() assumes it where there is [turning]
+      0;  ///< of an angled scope's turn; with_stated() fills it in where there is [turning]
   double picture_px = kAssumedErrors.picture_px;  ///< of a landmark's place in the picture, each axis
   double texel_mm = 0.15;                         ///< edge of a texel of the atlas: the paint's own grain
 
@@ -61,7 +61,7 @@ struct ErrorModel {
   std::optional<Eigen::Matrix<double, 6, 6>> registration_root;  ///< of a twist in R
   std::optional<Eigen::Matrix<double, 11, 11>> lens_root;        ///< of the lens's numbers, as LensStep
   std::optional<Eigen::Matrix3d> window_root;  ///< of the window's place in C, mm: the tip's
-  TimeFrom time_from = TimeFrom::assumed;
+  ErrorFrom time_from = ErrorFrom::assumed, light_post_from = ErrorFrom::assumed;
 };
 
 }  // namespace orcart

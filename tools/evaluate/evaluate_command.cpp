@@ -261,6 +261,8 @@ Result<EvaluationReport> evaluate(const EvaluateCommand& command, const Evaluate
                           .seen_from = command.seen_from == SeenFrom::inside ? "inside" : "outside",
                           .seed = command.simulation.seed,
                           .setups = command.simulation.setups};
+  if (auto told = check_turn_told(command.simulation.model, own->scope); !told)
+    return tl::unexpected(told.error());
   EvaluateCommand stated = command;
   stated.simulation.model = with_stated(command.simulation.model, own->scope, own->registration);
   report.model = stated.simulation.model;

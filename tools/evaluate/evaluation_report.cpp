@@ -72,10 +72,9 @@ std::string json_of(const ErrorModel& m) {
              m.marker_rms_mm, m.fiducial_rms_mm, m.fiducials, m.hand_eye_mm, m.hand_eye_rad, m.lens_centre_px,
              m.lens_focal, m.lens_edge_px) +
          text(
-             "\"refraction\": %g, \"time_s\": %g, \"speed_mm_s\": %g, \"turn_rad_s\": %g, \"picture_px\": "
-             "%g, "
-             "\"texel_mm\": %g}",
-             m.refraction, m.time_s, m.speed_mm_s, m.turn_rad_s, m.picture_px, m.texel_mm);
+             "\"refraction\": %g, \"time_s\": %g, \"speed_mm_s\": %g, \"turn_rad_s\": %g, "
+             "\"light_post_rad\": %g, \"picture_px\": %g, \"texel_mm\": %g}",
+             m.refraction, m.time_s, m.speed_mm_s, m.turn_rad_s, m.light_post_rad, m.picture_px, m.texel_mm);
 }
 
 std::string json_of(const NoiseRun& run) {

@@ -37,9 +37,23 @@ const char* word_for(bool stated, const char* by) {
   return stated ? by : "assumed";
 }
 
-const char* word_for(TimeFrom from) {
-  if (from == TimeFrom::session) return "session";
-  return word_for(from == TimeFrom::told, "told");
+const char* word_for(ErrorFrom from) {
+  switch (from) {
+    case ErrorFrom::told:
+      return "told";
+    case ErrorFrom::session:
+      return "session";
+    case ErrorFrom::passport:
+      return "passport";
+    case ErrorFrom::assumed:
+      break;
+  }
+  return "assumed";
+}
+
+/// Whether the scope turns, as far as the model knows.
+bool turns(const ErrorModel& m) {
+  return m.light_post_rad > 0 || m.light_post_from != ErrorFrom::assumed;
 }
 
 }  // namespace
@@ -60,16 +74,33 @@ ErrorModel with_stated(const ErrorModel& assumed, const ScopeModel& scope,
     model.lens_edge_px = lens_deviation_px(scope.lens, lens, edge_rad(scope));
   }
   if (scope.window_covariance) model.window_root = root_of(*scope.window_covariance);
-  if (scope.turning && model.light_post_rad == 0) model.light_post_rad = kAssumedErrors.light_post_rad;
+  if (scope.turning && !turns(model)) {
+    const std::optional<double>& notch_rad = scope.turning->notch_deviation_rad;
+    model = notch_rad ? with_turn(model, *notch_rad, ErrorFrom::passport)
+                      : with_turn(model, kAssumedErrors.light_post_rad, ErrorFrom::assumed);
+  }
   if (registration.covariance) model.registration_root = root_of(*registration.covariance);
   return model;
 }
 
-ErrorModel with_time(const ErrorModel& assumed, double deviation_s, TimeFrom from) {
+ErrorModel with_time(const ErrorModel& assumed, double deviation_s, ErrorFrom from) {
   ErrorModel model = assumed;
   model.time_s = deviation_s;
   model.time_from = from;
   return model;
+}
+
+ErrorModel with_turn(const ErrorModel& assumed, double deviation_rad, ErrorFrom from) {
+  ErrorModel model = assumed;
+  model.light_post_rad = deviation_rad;
+  model.light_post_from = from;
+  return model;
+}
+
+Result<void> check_turn_told(const ErrorModel& model, const ScopeModel& scope) {
+  if (scope.turning || model.light_post_from != ErrorFrom::told) return {};
+  return fail("--turn-deviation-deg is told of the scope " + scope.name +
+              ", whose passport has no [turning]; one of a scope that turns is accepted");
 }
 
 std::string sources_text(const ErrorModel& m) {
@@ -86,17 +117,18 @@ std::string sources_text(const ErrorModel& m) {
                       word_for(m.time_from)) +
          (m.window_root ? json::format("; window %.2f mm (passport)", m.window_root->norm())
                         : std::string()) +
-         (m.light_post_rad > 0 ? json::format("; light post's turn %.2f degrees (assumed)",
-                                              m.light_post_rad * 180 / std::numbers::pi)
-                               : std::string());
+         (turns(m) ? json::format("; light post's turn %.2f degrees (%s)",
+                                  m.light_post_rad * 180 / std::numbers::pi, word_for(m.light_post_from))
+                   : std::string());
 }
 
 std::string sources_json(const ErrorModel& m) {
   return json::format(
       "{\"hand-eye\": \"%s\", \"lens\": \"%s\", \"registration\": \"%s\", \"medium\": \"assumed\", \"time\": "
-      "\"%s\"}",
+      "\"%s\"%s}",
       word_for(m.hand_eye_root.has_value(), "passport"), word_for(m.lens_root.has_value(), "passport"),
-      word_for(m.registration_root.has_value(), "registration"), word_for(m.time_from));
+      word_for(m.registration_root.has_value(), "registration"), word_for(m.time_from),
+      turns(m) ? json::format(", \"light post\": \"%s\"", word_for(m.light_post_from)).c_str() : "");
 }
 
 }  // namespace orcart

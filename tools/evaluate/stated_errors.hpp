@@ -14,7 +14,11 @@ ErrorModel with_stated(const ErrorModel& assumed, const ScopeModel& scope,
                        const RegistrationFile& registration);
 
 /// The time's standard deviation as somebody told it, or the session, in place of the assumed one.
-ErrorModel with_time(const ErrorModel& assumed, double deviation_s, TimeFrom from = TimeFrom::told);
+ErrorModel with_time(const ErrorModel& assumed, double deviation_s, ErrorFrom from = ErrorFrom::told);
+/// The same of a light post's turn, which with_stated() then leaves as it is.
+ErrorModel with_turn(const ErrorModel& assumed, double deviation_rad, ErrorFrom from = ErrorFrom::told);
+/// Refuses a turn's deviation that was told of a scope that does not turn.
+Result<void> check_turn_told(const ErrorModel& model, const ScopeModel& scope);
 
 /// One line: each part's size, and in brackets where it comes from.
 std::string sources_text(const ErrorModel& model);

@@ -108,7 +108,7 @@ void add_evaluate(CLI::App& app, int& exit_code) {
   verb->add_option("--views", command.views,
                    "views.csv: recorded pictures to compare in place of simulated ones");
   verb->add_option("--page", command.page, "a folder for a page with pictures and figures");
-  add_time_deviation(*verb, arguments->command.simulation.model);
+  add_deviations(*verb, arguments->command.simulation.model);
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   add_evaluate_map(*verb, exit_code);
   add_evaluate_session(*verb, exit_code);

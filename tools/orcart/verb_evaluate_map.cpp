@@ -85,7 +85,7 @@ void add_evaluate_map(CLI::App& evaluate, int& exit_code) {
             return std::string("a name that ends in .obj, .ply, .glb or .png is accepted");
           },
           "NAME.obj|NAME.ply|NAME.glb|NAME.png"));
-  add_time_deviation(*verb, arguments->command.model);
+  add_deviations(*verb, arguments->command.model);
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

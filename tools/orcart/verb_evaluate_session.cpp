@@ -74,7 +74,7 @@ void add_evaluate_session(CLI::App& evaluate, int& exit_code) {
       ->capture_default_str();
   verb->add_option("--seed", command.seed, "the same seed takes the same patches")->capture_default_str();
   verb->add_option("--page", command.page, "a folder for a page with a chart over time");
-  add_time_deviation(*verb, arguments->command.model);
+  add_deviations(*verb, arguments->command.model);
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -27,7 +27,8 @@ constexpr const char* kCalibrateExample =
     "\"marker\"); a notch that the pictures show serves turn = \"notch\". The first picture is at the "
     "turn of "
     "the passport unless both show a notch.\nThe passport is written back with [turning] unless --out names "
-    "another.";
+    "another; with three pictures or "
+    "more that show the notch it says how well a turn is known by it.";
 
 constexpr const char* kTurnExample =
     "Example:\n  orcart turn frame.png --scope scope.toml\n\n"

@@ -124,6 +124,14 @@ TEST(CartConfig, FollowsAScopeThatTurnsByWhatIsThere) {
   EXPECT_TRUE(
       tells(complaint(replaced(angled, "turn = \"marker\"", "turn = \"marker\"\nmost_mismatch_deg = 0")),
             "most_mismatch_deg"));
+  EXPECT_FALSE(config->turn_deviation_rad);
+  const auto told = read_cart(folder.write(
+      "told.toml", replaced(angled, "turn = \"marker\"", "turn = \"marker\"\nturn_deviation_deg = 0.5")));
+  ASSERT_TRUE(told) << told.error().message;
+  EXPECT_NEAR(told->turn_deviation_rad.value(), 0.0087266, 1e-7);
+  EXPECT_TRUE(
+      tells(complaint(replaced(angled, "turn = \"marker\"", "turn = \"marker\"\nturn_deviation_deg = -1")),
+            "turn_deviation_deg"));
 }
 
 /// The angled demo, followed by an encoder of this section.

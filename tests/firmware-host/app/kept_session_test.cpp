@@ -56,11 +56,20 @@ TEST_F(KeptSessionTest, HoldsCalibrationAndBudgetsOnceFinished) {
   EXPECT_EQ(calibration.scope_toml, text_of(config.scope));
   EXPECT_EQ(calibration.registration_toml, text_of(config.registration));
   EXPECT_EQ(reader->meta().value().started_at, instant_from_nanos(5));
+  EXPECT_FALSE(reader->meta().value().turn_deviation_rad) << "a scope in one piece";
   const auto budgets = reader->budgets().value();
   ASSERT_EQ(budgets.size(), kStageCount);
   EXPECT_EQ(budgets.back().stage, "i");
   EXPECT_EQ(budgets.back().max, 3ms);
   EXPECT_EQ(budgets.back().misses, 1u);
+}
+
+TEST_F(KeptSessionTest, SaysHowWellATurnIsKnown) {
+  config.turn = TurnSource::notch;
+  patient.scope.turning = Turning{.notch_deviation_rad = 0.0025};
+  auto session = create();
+  ASSERT_TRUE(session) << session.error().message;
+  EXPECT_EQ(SessionReader::open(file).value().meta().value().turn_deviation_rad, 0.0025);
 }
 
 }  // namespace

@@ -64,6 +64,15 @@ TEST(Patient, AScopeThatTurnsIsPutAtItsTurnAndNotPaintedWithUntilItIsSaid) {
   ASSERT_FALSE(senseless);
   EXPECT_NE(senseless.error().message.find("no [turning]"), std::string::npos) << senseless.error().message;
 
+  config.turn_rad.reset();
+  config.turn_deviation_rad = 0.01;
+  const auto as_senseless = read_patient(config);
+  ASSERT_FALSE(as_senseless);
+  EXPECT_NE(as_senseless.error().message.find("turn_deviation_deg means nothing"), std::string::npos)
+      << as_senseless.error().message;
+  config.turn_deviation_rad.reset();
+  config.turn_rad = 0.5;
+
   config.scope = folder.write("angled.toml", text_of(config.scope) +
                                                  "\n[turning]\nview_angle_rad = 0.5236\ncentre_px = [320, "
                                                  "240]\nmarker = \"shaft\"\n");

@@ -123,7 +123,8 @@ ScopeModel scope_with(LensModel model) {
               .marker = TurnMarker::head,
               .axis = {0.6, 0, 0.8},
               .axis_point_mm = {1.0 / 3, -2, 0},
-              .R_SL = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix()};
+              .R_SL = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(),
+              .notch_deviation_rad = 1.0 / 300};
   return scope;
 }
 
@@ -164,6 +165,21 @@ TEST_P(EachLens, ComesBackAsItWasWritten) {
   EXPECT_EQ(back->turning->axis_point_mm, scope.turning->axis_point_mm);
   ASSERT_TRUE(back->turning->R_SL);
   EXPECT_TRUE(back->turning->R_SL->isApprox(*scope.turning->R_SL, 1e-14));
+  EXPECT_EQ(back->turning->notch_deviation_rad, scope.turning->notch_deviation_rad);
+}
+
+TEST(ScopeFile, SaysOfANotchOnlyWhatIsKnownOfIt) {
+  const TemporaryFolder folder;
+  ScopeModel scope = scope_with(LensModel::brown);
+  scope.turning->notch_deviation_rad.reset();
+  ASSERT_TRUE(write_scope(folder / "scope.toml", scope));
+  EXPECT_FALSE(read_scope(folder / "scope.toml")->turning->notch_deviation_rad);
+  scope.turning->notch_deviation_rad = -0.01;
+  ASSERT_TRUE(write_scope(folder / "scope.toml", scope));
+  const auto refused = read_scope(folder / "scope.toml");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("notch_deviation_rad"), std::string::npos)
+      << refused.error().message;
 }
 
 TEST(ScopeFile, KeepsTheAxisOfAMarkerOnTheShaftWhereThereIsASecondOne) {

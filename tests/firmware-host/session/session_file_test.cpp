@@ -30,7 +30,8 @@ SessionMeta some_meta() {
           .started_at = instant_from_nanos(77),
           .tracker_against_video = -12ms,
           .tracker_against_video_deviation = 1500us,
-          .turn_rad = -0.25};
+          .turn_rad = -0.25,
+          .turn_deviation_rad = 0.0025};
 }
 
 class SessionFile : public ::testing::Test {
@@ -127,6 +128,7 @@ TEST_F(SessionFile, KeepsMetaCalibrationEventsAndBudgets) {
   EXPECT_EQ(read.meta()->tracker_against_video, -12ms);
   EXPECT_EQ(read.meta()->tracker_against_video_deviation, Nanos(1500us));
   EXPECT_DOUBLE_EQ(read.meta()->turn_rad, -0.25);
+  EXPECT_DOUBLE_EQ(read.meta()->turn_deviation_rad.value(), 0.0025);
   EXPECT_EQ(read.calibration()->scope_toml, "name = \"30 degree\"");
   EXPECT_EQ(read.calibration()->surface_hash, "cafe");
   ASSERT_EQ(read.events()->size(), 1U);
@@ -163,7 +165,8 @@ TEST_F(SessionFile, OfTheFormWithoutVelocitiesIsReadWithoutThem) {
     ASSERT_TRUE(database);
     for (int i = 0; i < 6; ++i)
       ASSERT_TRUE(database->run("ALTER TABLE captures DROP COLUMN v" + std::to_string(i)));
-    ASSERT_TRUE(database->run("DELETE FROM meta WHERE key = 'tracker_against_video_deviation_ns'"));
+    for (const std::string key : {"tracker_against_video_deviation_ns", "turn_deviation_nrad"})
+      ASSERT_TRUE(database->run("DELETE FROM meta WHERE key = '" + key + "'"));
     ASSERT_TRUE(database->run("PRAGMA user_version = 2"));
   }
   SessionReader read = reader();
@@ -172,6 +175,7 @@ TEST_F(SessionFile, OfTheFormWithoutVelocitiesIsReadWithoutThem) {
   EXPECT_FALSE(captures->front().facts.velocity);
   EXPECT_EQ(captures->front().facts.turn_rad, facts_number(3).turn_rad);
   EXPECT_FALSE(read.meta()->tracker_against_video_deviation);
+  EXPECT_FALSE(read.meta()->turn_deviation_rad);
   EXPECT_EQ(read.meta()->tracker_against_video, -12ms);
 }
 

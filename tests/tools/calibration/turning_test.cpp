@@ -232,6 +232,30 @@ TEST(Turning, IsToldByTheNotchToATenthOfADegree) {
   EXPECT_FALSE(turn_by_notch(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(120)), passport));
 }
 
+TEST(Turning, ByTheNotchIsKnownByThePicturesScatterAsFarAsTheyAreMany) {
+  const RealScope real = real_scope(30, TurnMarker::shaft);
+  const std::vector<double> turns{0, 90, 180, -90};
+  auto sights = sights_of(real, turns, {});
+  constexpr std::array<double, 4> kOff_rad{0.002, -0.002, 0.002, -0.002};
+  for (std::size_t k = 0; k < turns.size(); ++k)
+    sights[k].notch_rad = std::remainder(0.6 + turns[k] * kDegree + kOff_rad[k], 2 * kPi);
+  const auto fit = fit_turning(sights, task_for(real, 30));
+  ASSERT_TRUE(fit) << fit.error().message;
+  EXPECT_NEAR(fit->notch_rms_rad, 0.002, 1e-6);
+  // Of four about their mean: 0.002 sqrt(4/3); Student's 95 % with three degrees of freedom is 3.182.
+  EXPECT_NEAR(fit->turning.notch_deviation_rad.value(), 0.002 * std::sqrt(4.0 / 3) * 3.182 / 1.96, 1e-6);
+
+  for (TurnSight& sight : sights) sight.notch_rad.reset();
+  const auto without = fit_turning(sights, task_for(real, 30));
+  ASSERT_TRUE(without) << without.error().message;
+  EXPECT_FALSE(without->turning.notch_deviation_rad);
+  sights.pop_back();
+  sights[0].notch_rad = 0.6, sights[1].notch_rad = 0.6 + kPi / 2;
+  const auto two = fit_turning(sights, task_for(real, 30));
+  ASSERT_TRUE(two) << two.error().message;
+  EXPECT_FALSE(two->turning.notch_deviation_rad) << "two notches hardly scatter";
+}
+
 /// The same sights with a second marker on the other side of the coupler: R_SL says where it is at turn 0.
 std::vector<TurnSight> with_second(std::vector<TurnSight> sights, const RealScope& real,
                                    const std::vector<double>& turns_deg, const Eigen::Matrix3d& R_SL) {

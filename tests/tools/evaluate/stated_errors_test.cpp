@@ -70,8 +70,38 @@ TEST(StatedErrors, AreTheAssumedOnesWhereNothingIsStated) {
             "\"assumed\", \"time\": \"told\"}");
 }
 
+TEST(StatedErrors, ATurnIsToldElseThePassportsNotchsElseAssumed) {
+  ScopeModel scope = plain_scope();
+  EXPECT_EQ(with_stated({}, scope, {}).light_post_rad, 0) << "a scope in one piece";
+  scope.turning.emplace();
+  const ErrorModel assumed = with_stated({}, scope, {});
+  EXPECT_EQ(assumed.light_post_rad, kAssumedErrors.light_post_rad);
+  EXPECT_NE(sources_text(assumed).find("light post's turn 0.20 degrees (assumed)"), std::string::npos);
+  scope.turning->notch_deviation_rad = 0.01;
+  const ErrorModel stated = with_stated({}, scope, {});
+  EXPECT_EQ(stated.light_post_rad, 0.01);
+  EXPECT_EQ(with_stated(stated, scope, {}).light_post_from, ErrorFrom::passport) << "stated once more";
+  EXPECT_NE(sources_json(stated).find("\"light post\": \"passport\"}"), std::string::npos);
+  for (const double told_rad : {0.02, 0.0}) {
+    const ErrorModel told = with_stated(with_turn({}, told_rad), scope, {});
+    EXPECT_EQ(told.light_post_rad, told_rad);
+    EXPECT_NE(sources_json(told).find("\"light post\": \"told\"}"), std::string::npos);
+  }
+}
+
+TEST(StatedErrors, ATurnsDeviationIsRefusedForAScopeThatDoesNotTurn) {
+  ScopeModel scope = plain_scope();
+  EXPECT_TRUE(check_turn_told({}, scope));
+  const auto refused = check_turn_told(with_turn({}, 0.01), scope);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("has no [turning]"), std::string::npos) << refused.error().message;
+  scope.turning.emplace();
+  EXPECT_TRUE(check_turn_told(with_turn({}, 0.01), scope));
+}
+
 /// `orcart evaluate` on the ball, by files.
-EvaluationReport evaluated(const TemporaryFolder& folder, const ScopeModel& scope) {
+EvaluationReport evaluated(const TemporaryFolder& folder, const ScopeModel& scope,
+                           const ErrorModel& model = {}) {
   const BallScene ball;
   const Surface surface = *make_surface(ball.mesh, "ball");
   EXPECT_TRUE(write_ply(folder / "ball.ply", surface));
@@ -84,12 +114,28 @@ EvaluationReport evaluated(const TemporaryFolder& folder, const ScopeModel& scop
                           .registration = folder / "registration.toml",
                           .scope_rom = share / "scope.rom",
                           .reference_rom = share / "reference.rom",
-                          .simulation = {.setups = 100, .landmarks = 4},
+                          .simulation = {.model = model, .setups = 100, .landmarks = 4},
                           .noises = {{"vega", 0.12}},
                           .pairs = 0};
   const auto report = evaluate(command, [](const std::string&, double) {});
   EXPECT_TRUE(report) << report.error().message;
   return report.value_or(EvaluationReport{});
+}
+
+TEST(Evaluate, DrawsTheTurnAsWellAsItIsTold) {
+  const TemporaryFolder folder;
+  ScopeModel scope = plain_scope();
+  scope.turning = Turning{.centre_px = {290, 260}};
+  const auto part = static_cast<std::size_t>(Component::light_post);
+  const auto mean_mm = [&](const ErrorModel& model) {
+    const EvaluationReport report = evaluated(folder, scope, model);
+    EXPECT_NE(json_of(report).find("\"light_post_rad\": "), std::string::npos);
+    return report.runs[0].result.alone[part].mean;
+  };
+  const double assumed_mm = mean_mm({});
+  EXPECT_NEAR(mean_mm(with_turn({}, 3 * kAssumedErrors.light_post_rad)) / assumed_mm, 3, 0.05);
+  scope.turning->notch_deviation_rad = 2 * kAssumedErrors.light_post_rad;
+  EXPECT_NEAR(mean_mm({}) / assumed_mm, 2, 0.05);
 }
 
 TEST(Evaluate, TakesThePassportsCovariancesAndSaysSo) {

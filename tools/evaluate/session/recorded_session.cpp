@@ -76,6 +76,7 @@ Result<RecordedSession> RecordedSession::open(const std::filesystem::path& file)
   session.started_at_ = meta->started_at;
   if (meta->tracker_against_video_deviation)
     session.time_deviation_s_ = seconds(*meta->tracker_against_video_deviation);
+  session.turn_deviation_rad_ = meta->turn_deviation_rad;
   const auto calibration = session.reader_.calibration();
   if (!calibration) return tl::unexpected(calibration.error());
   auto scope = read_text(calibration->scope_toml, file, "scope.toml",

@@ -20,6 +20,8 @@ class RecordedSession {
   bool turned_on_the_way() const;
   /// Standard deviation of tracker against video, s, where cart.toml told one.
   std::optional<double> time_deviation_s() const { return time_deviation_s_; }
+  /// Of a light post's turn, rad, as the cart reckoned with it; nothing of a scope that does not turn.
+  std::optional<double> turn_deviation_rad() const { return turn_deviation_rad_; }
   const RegistrationFile& registration() const { return registration_; }
   const std::string& surface_hash() const { return surface_hash_; }
   /// In the order of painting, those that were undone left out.
@@ -42,7 +44,7 @@ class RecordedSession {
   std::vector<StoredCapture> captures_;
   std::size_t undone_ = 0;
   Instant started_at_{};
-  std::optional<double> time_deviation_s_;
+  std::optional<double> time_deviation_s_, turn_deviation_rad_;
   double turn_rad_ = 0;
 };
 

@@ -27,6 +27,17 @@ struct Earlier {
   Capture moving;
 };
 
+/// With the deviations that the cart reckoned with, where nobody tells others.
+ErrorModel as_recorded(const ErrorModel& told, const RecordedSession& session) {
+  ErrorModel model = told;
+  if (const auto time_s = session.time_deviation_s(); time_s && model.time_from == ErrorFrom::assumed)
+    model = with_time(model, *time_s, ErrorFrom::session);
+  if (const auto turn_rad = session.turn_deviation_rad();
+      turn_rad && model.light_post_from == ErrorFrom::assumed)
+    model = with_turn(model, *turn_rad, ErrorFrom::session);
+  return model;
+}
+
 /// Counts for each gap the pairs that reach across it.
 std::vector<SessionGap> gaps_of(const RecordedSession& session, const std::vector<SessionPair>& pairs) {
   std::vector<SessionGap> gaps;
@@ -129,15 +140,14 @@ Result<SessionReport> evaluate_session(const SessionCommand& command, const Eval
                               .X_MR = session->registration().X_MR,
                               .scope_markers_mm = *std::move(scope_markers),
                               .reference_markers_mm = *std::move(reference_markers)};
-  ErrorModel model = with_stated(command.model, session->scope(), session->registration());
-  if (const auto deviation_s = session->time_deviation_s();
-      deviation_s && model.time_from == TimeFrom::assumed)
-    model = with_time(model, *deviation_s, TimeFrom::session);
-  SessionReport report{.model = model,
-                       .session = command.session.filename().string(),
-                       .surface = command.surface.filename().string(),
-                       .captures = session->captures().size(),
-                       .undone = session->undone()};
+  if (auto told = check_turn_told(command.model, session->scope()); !told)
+    return tl::unexpected(told.error());
+  SessionReport report{
+      .model = with_stated(as_recorded(command.model, *session), session->scope(), session->registration()),
+      .session = command.session.filename().string(),
+      .surface = command.surface.filename().string(),
+      .captures = session->captures().size(),
+      .undone = session->undone()};
   if (auto compared = compare_all(*session, command, scene, progress, report); !compared)
     return tl::unexpected(compared.error());
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

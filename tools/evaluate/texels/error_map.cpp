@@ -68,6 +68,7 @@ Result<ErrorMapReport> make_error_map(const ErrorMapCommand& command, const Eval
   if (!surface) return tl::unexpected(surface.error());
   const auto scope = read_scope(command.scope);
   if (!scope) return tl::unexpected(scope.error());
+  if (auto told = check_turn_told(command.model, *scope); !told) return tl::unexpected(told.error());
   const auto registration = read_registration(command.registration);
   if (!registration) return tl::unexpected(registration.error());
   auto scope_markers = markers_of_body(command.scope_rom),

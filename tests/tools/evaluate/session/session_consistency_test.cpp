@@ -91,7 +91,8 @@ class SessionConsistency : public ::testing::Test {
     const auto file = folder_ / ("s" + std::to_string(++sessions_) + ".orcart");
     SessionWriter writer = SessionWriter::create(file, {.started_utc = "2026-01-01T00:00:00Z",
                                                         .started_at = instant_from_nanos(0),
-                                                        .tracker_against_video_deviation = deviation_})
+                                                        .tracker_against_video_deviation = deviation_,
+                                                        .turn_deviation_rad = turn_deviation_rad_})
                                .value();
     EXPECT_TRUE(writer.write_calibration({.scope_toml = text_of_file(folder_ / "scope.toml"),
                                           .registration_toml = text_of_file(folder_ / "registration.toml"),
@@ -134,6 +135,7 @@ class SessionConsistency : public ::testing::Test {
   std::string hash_;
   int sessions_ = 0;
   std::optional<Nanos> deviation_;
+  std::optional<double> turn_deviation_rad_;
 };
 
 TEST_F(SessionConsistency, CapturesInTheirPlaceRaiseNoAlarm) {
@@ -272,6 +274,24 @@ TEST_F(SessionConsistency, CapturesOfAScopeThatTurnsAreComparedEachThroughItsOwn
   ASSERT_TRUE(apart) << apart.error().message;
   EXPECT_GE(apart->alarms(), 1U) << text_of(*apart);
   EXPECT_FALSE(apart->pairs.front().pair.alarm());
+}
+
+TEST_F(SessionConsistency, ATurnIsAsWellKnownAsTheSessionSaysUnlessToldOtherwise) {
+  ball_.scope = angled();
+  ball_.scope.turning->notch_deviation_rad = 0.001;
+  ASSERT_TRUE(write_scope(folder_ / "scope.toml", ball_.scope));
+  const auto ask = [&](std::optional<double> kept_rad) {
+    turn_deviation_rad_ = kept_rad;
+    return command(write_session({{.number = 0}, {.number = 1, .turn_rad = 0.7}}));
+  };
+  const auto unsaid = evaluated(ask({})), said = evaluated(ask(0.02));
+  ASSERT_TRUE(unsaid && said);
+  EXPECT_NE(text_of(*unsaid).find("turn 0.06 degrees (passport)"), std::string::npos) << text_of(*unsaid);
+  EXPECT_NE(text_of(*said).find("turn 1.15 degrees (session)"), std::string::npos) << text_of(*said);
+  EXPECT_GT(said->pairs.front().pair.predicted_mm, 1.05 * unsaid->pairs.front().pair.predicted_mm);
+  auto told = ask(0.02);
+  told.model = with_turn(told.model, 0.01);
+  EXPECT_NE(text_of(*evaluated(told)).find("turn 0.57 degrees (told)"), std::string::npos);
 }
 
 TEST_F(SessionConsistency, TurnsThroughAPassportThatDoesNotTurnAreRefused) {
