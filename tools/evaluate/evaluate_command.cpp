@@ -12,6 +12,7 @@
 #include "tools/evaluate/pair_prediction.hpp"
 #include "tools/evaluate/stated_errors.hpp"
 #include "tools/evaluate/turned_scenes.hpp"
+#include "tools/evaluate/view_velocities.hpp"
 #include "tools/mesh/mesh_pictures.hpp"
 
 namespace orcart {
@@ -81,13 +82,14 @@ class Evaluator {
     const auto file = read_views(command_.views);
     if (!file) return tl::unexpected(file.error());
     if (auto turns = check_turns(file->views, own_.scope, command_.views); !turns) return turns;
+    report.notes.push_back(text_of(velocities_of(file->views)));
     TurnedScenes turned(scene_, model(), own_.registration);
     RandomStream random(command_.simulation.seed, 2'000'000);
     const auto fiducials = fiducials_of_chance(scene_, model().fiducials, random);
     std::optional<TakenPicture> before;
     const auto judged = [&](const View& view) {
       const TurnedScene& at = turned.at(view.turn_rad);
-      return JudgedCapture{at.scene, at.model, {.X_MC = view.X_MC}};
+      return JudgedCapture{at.scene, at.model, capture_of(view, at.model)};
     };
     for (std::size_t i = 0; i < file->views.size(); ++i) {
       progress_("comparing recorded pictures",

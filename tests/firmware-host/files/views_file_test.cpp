@@ -124,5 +124,47 @@ TEST(ViewsFile, ReadsTheTurnOfAScopeThatTurned) {
   EXPECT_NE(error_of("a.png,1,0,0,0,0,1,0,0,0,0,1,0,left\n").find("turn_rad is \"left\""), std::string::npos);
 }
 
+constexpr const char* kVelocity = ",vx_mm_s,vy_mm_s,vz_mm_s,wx_rad_s,wy_rad_s,wz_rad_s";
+constexpr const char* kAtRest = "a.png,1,0,0,0,0,1,0,0,0,0,1,0";
+
+TEST(ViewsFile, ReadsHowFastTheScopeMovedWithAndWithoutATurn) {
+  const TemporaryFolder folder;
+  const auto turned = read_text(folder, std::string(kHeader) + ",turn_rad" + kVelocity + "\n" + kAtRest +
+                                            ",0.5,1,2,3,-0.1,0,1e-2\n" + kAtRest + ",0.25,,,,,,\n");
+  ASSERT_TRUE(turned) << turned.error().message;
+  ASSERT_EQ(turned->views.size(), 2U);
+  EXPECT_EQ(turned->views[0].turn_rad, 0.5);
+  EXPECT_EQ(turned->views[0].velocity.value(), (Twist() << 1, 2, 3, -0.1, 0, 0.01).finished());
+  EXPECT_EQ(turned->views[1].turn_rad, 0.25);
+  EXPECT_FALSE(turned->views[1].velocity) << "all empty: not known";
+  for (const std::string& header : {std::string(kHeader) + kVelocity + "\n", std::string()}) {
+    const auto straight = read_text(folder, header + kAtRest + ",1,2,3,4,5,6\n");
+    ASSERT_TRUE(straight) << straight.error().message;
+    EXPECT_EQ(straight->views[0].turn_rad, 0);
+    EXPECT_EQ(straight->views[0].velocity.value(), (Twist() << 1, 2, 3, 4, 5, 6).finished());
+  }
+}
+
+TEST(ViewsFile, RefusesAVelocityThatIsNoneByLineAndColumn) {
+  const std::string line = std::string(kAtRest) + ",0.5,1,2,3,";
+  EXPECT_EQ(error_of(std::string(kHeader) + ",turn_rad" + kVelocity + "\n" + line + "0,slow,0\n"),
+            "views.csv:2: wy_rad_s is \"slow\"; a finite number is accepted");
+  EXPECT_NE(error_of(line + "0,0,inf").find("wz_rad_s is \"inf\""), std::string::npos);
+  EXPECT_NE(error_of(line + "0,,0").find("wy_rad_s is \"\""), std::string::npos)
+      << "some, but not all, empty";
+  EXPECT_NE(error_of(std::string(kHeader) + ",turn_rad" + kVelocity + "\n" + line + "0,0\n")
+                .find("views.csv:2: has 19 fields; as many as the header's, 20,"),
+            std::string::npos);
+  EXPECT_NE(error_of(line + "0,0,0,0").find("has 21 fields"), std::string::npos);
+  EXPECT_NE(error_of(std::string(kAtRest) + ",1,2,3,4,5").find("has 18 fields"), std::string::npos);
+}
+
+TEST(ViewsFile, RefusesVelocitiesOfAnotherOrderOrUnitByTheirHeader) {
+  const std::string degrees = ",vx_mm_s,vy_mm_s,vz_mm_s,wx_deg_s,wy_deg_s,wz_deg_s";
+  EXPECT_NE(error_of(kHeader + degrees + "\n" + kAtRest + ",1,2,3,4,5,6\n")
+                .find("views.csv:1: the column wx_rad_s is named \"wx_deg_s\""),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace orcart

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "board/sim/picture_png.hpp"
@@ -24,13 +25,23 @@ std::string line_of(const std::string& name, const Pose<A, B>& X, const std::str
   return line + rest + "\n";
 }
 
+/// Six fields; empty where the velocity is not known.
+std::string fields_of(const std::optional<Twist>& velocity) {
+  std::string fields;
+  for (Eigen::Index i = 0; i < 6; ++i) fields += velocity ? json::format(",%.17g", (*velocity)[i]) : ",";
+  return fields;
+}
+
 Result<void> write_files(RecordedSession& session, const std::filesystem::path& folder,
                          const EvaluateProgress& progress) {
   const Pose<R, M> X_RM = session.registration().X_MR.inverse();
   const bool turned = session.turned_on_the_way();
-  std::string views = "image,m00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23", poses;
-  views += turned ? ",turn_rad\n" : "\n";
   const auto& captures = session.captures();
+  const bool moving =
+      std::ranges::any_of(captures, [](const auto& c) { return c.facts.velocity.has_value(); });
+  std::string views = "image,m00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23", poses;
+  views += turned ? ",turn_rad" : "";
+  views += moving ? ",vx_mm_s,vy_mm_s,vz_mm_s,wx_rad_s,wy_rad_s,wz_rad_s\n" : "\n";
   for (std::size_t i = 0; i < captures.size(); ++i) {
     progress("writing pictures", static_cast<double>(i) / static_cast<double>(captures.size()));
     const std::string name = json::format("capture-%04d.png", static_cast<int>(captures[i].id));
@@ -39,7 +50,9 @@ Result<void> write_files(RecordedSession& session, const std::filesystem::path& 
     if (auto written = write_picture_png(folder / name, picture->descriptor()); !written) return written;
     const Pose<M, C>& X_MC = captures[i].facts.X_MC;
     const double turn_rad = captures[i].facts.turn_rad;
-    views += line_of(name, X_MC, turned ? json::format(",%.17g", turn_rad) : "");
+    views += line_of(name, X_MC,
+                     (turned ? json::format(",%.17g", turn_rad) : "") +
+                         (moving ? fields_of(captures[i].facts.velocity) : ""));
     poses += line_of(name, X_RM * X_MC * optics_at(session.scope(), turn_rad).X_SC.inverse());
   }
   if (auto written = write_whole_file(folder / "views.csv", views); !written) return written;

@@ -104,8 +104,11 @@ Result<ErrorMapReport> make_error_map(const ErrorMapCommand& command, const Eval
   progress("predicting", 0);
   const ErrorModel model = with_stated(command.model, *scope, *registration);
   const std::vector<float> rms_mm = predicted_rms_mm(fiducials, painted);
-  ErrorMapReport report{
-      .model = model, .out = command.out, .views = views->views.size(), .setups = command.setups};
+  ErrorMapReport report{.model = model,
+                        .out = command.out,
+                        .views = views->views.size(),
+                        .velocities = velocities_of(views->views),
+                        .setups = command.setups};
   summarise(painter->layout(), rms_mm, report);
   if (report.texels == 0)
     return fail(command.out.string() + " is not written: none of the " + std::to_string(report.views) +
@@ -123,7 +126,7 @@ Result<ErrorMapReport> make_error_map(const ErrorMapCommand& command, const Eval
 }
 
 std::string text_of(const ErrorMapReport& r) {
-  return "errors: " + sources_text(r.model) + "\n" +
+  return "errors: " + sources_text(r.model) + "\n" + text_of(r.velocities) + "\n" +
          json::format("%zu views, %zu painted texels of %.2f mm, %.1f %% of the surface\n", r.views, r.texels,
                       r.texel_mm, 100 * r.coverage) +
          json::format("predicted error, mm RMS: mean %.3f, p95 %.3f, max %.2f\n", r.rms_mm.mean, r.rms_mm.p95,
@@ -139,7 +142,7 @@ std::string text_of(const ErrorMapReport& r) {
 }
 
 std::string json_of(const ErrorMapReport& r) {
-  return "{\"errors_from\": " + sources_json(r.model) +
+  return "{\"errors_from\": " + sources_json(r.model) + ", \"velocity\": " + json_of(r.velocities) +
          json::format(
              ", \"views\": %zu, \"texels\": %zu, \"texel_mm\": %.4f, \"coverage\": %.4f, "
              "\"predicted_rms\": {\"mean_mm\": %.4f, \"p95_mm\": %.4f, \"max_mm\": %.4f}, ",

@@ -24,6 +24,7 @@ struct ErrorMapReport {
   ErrorModel model;                         ///< with what passport and registration state
   std::filesystem::path out;
   std::size_t views = 0, texels = 0;
+  ViewVelocities velocities;          ///< of the views, which the time's error is multiplied by
   double texel_mm = 0, coverage = 0;  ///< of the surface, 0..1
   Statistics rms_mm;                  ///< over the painted texels
   int setups = 0;

@@ -83,10 +83,6 @@ class SetupErrors {
 
 }  // namespace
 
-Capture capture_of(const View& view, const ErrorModel& model) {
-  return {.X_MC = view.X_MC, .velocity = assumed_velocity(model)};
-}
-
 std::vector<const TurnedScene*> scenes_of(const std::vector<View>& views, TurnedScenes& scenes) {
   std::vector<const TurnedScene*> of_views;
   of_views.reserve(views.size());

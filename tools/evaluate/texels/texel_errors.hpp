@@ -7,6 +7,7 @@
 #include "tools/evaluate/propagation.hpp"
 #include "tools/evaluate/simulation.hpp"
 #include "tools/evaluate/turned_scenes.hpp"
+#include "tools/evaluate/view_velocities.hpp"
 
 namespace orcart {
 
@@ -36,8 +37,5 @@ struct DrawnCoverage {
 /// whether the light that belongs there lands within the predicted 95 % ellipse.
 DrawnCoverage drawn_coverage(const std::vector<Eigen::Vector3d>& fiducials_M_mm, const PaintedTexels& painted,
                              int setups, RandomStream& random);
-
-/// The capture of a view, moving as the model says: along the picture's x, turning about its y.
-Capture capture_of(const View& view, const ErrorModel& model);
 
 }  // namespace orcart

@@ -221,7 +221,7 @@ TEST_F(SessionConsistency, RefusesAnotherSurfaceAndTooFewCaptures) {
 }
 
 TEST_F(SessionConsistency, ASessionIsExportedAsFilesThatOtherVerbsRead) {
-  const auto session = write_session({{0}, {1, 0, true}, {2, 0.5}});
+  const auto session = write_session({{0}, {1, 0, true}, {2, 0.5, false, 0, 12.5}});
   const auto report =
       export_session({.session = session, .out = folder_ / "out"}, [](const std::string&, double) {});
   ASSERT_TRUE(report) << report.error().message;
@@ -235,6 +235,8 @@ TEST_F(SessionConsistency, ASessionIsExportedAsFilesThatOtherVerbsRead) {
   believed.translation_mm.x() += 0.5;
   EXPECT_LT((views->views[1].X_MC.translation_mm - believed.translation_mm).norm(), 1e-9);
   EXPECT_EQ(views->views[1].image.filename(), "capture-0003.png");
+  EXPECT_EQ(views->views[0].velocity.value(), Twist::Zero());
+  EXPECT_EQ(views->views[1].velocity.value(), 12.5 * Twist::Unit(0));
   const auto picture = read_picture(views->views[1].image);
   ASSERT_TRUE(picture) << picture.error().message;
   EXPECT_EQ(picture->width_px, kWidth);
@@ -252,6 +254,31 @@ TEST_F(SessionConsistency, ASessionIsExportedAsFilesThatOtherVerbsRead) {
   EXPECT_LT((back.translation_mm - believed.translation_mm).norm(), 1e-6);
   EXPECT_LT((back.rotation - believed.rotation).norm(), 1e-9);
   EXPECT_EQ(registration->surface_hash, hash_);
+}
+
+TEST_F(SessionConsistency, AnExportIsComparedWithTheVelocitiesThatItTells) {
+  const auto predicted_mm = [&](double speed_mm_s) {
+    const auto session = write_session({{.number = 0}, {.number = 1, .speed_mm_s = speed_mm_s}});
+    const auto out = folder_ / ("at-" + std::to_string(speed_mm_s));
+    EXPECT_TRUE(export_session({.session = session, .out = out}, [](const std::string&, double) {}));
+    const auto share = std::filesystem::path(std::getenv("ORCART_SOURCE_DIR")) / "share/tools";
+    const auto report = evaluate({.surface = folder_ / "ball.ply",
+                                  .scope = out / "scope.toml",
+                                  .registration = out / "registration.toml",
+                                  .scope_rom = share / "scope.rom",
+                                  .reference_rom = share / "reference.rom",
+                                  .simulation = {.model = with_time({}, 0.005), .setups = 2, .landmarks = 1},
+                                  .noises = {{"vega", 0.12}},
+                                  .views = out / "views.csv"},
+                                 [](const std::string&, double) {});
+    EXPECT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->pairs.size(), 1U);
+    EXPECT_NE(text_of(*report).find("velocity: of 2 views told, of 0 assumed"), std::string::npos);
+    return report->pairs.front().predicted_mm;
+  };
+  const double still = predicted_mm(0), moving = predicted_mm(100);
+  // 100 mm/s by 5 ms, along the wall as the picture's x lies on it.
+  EXPECT_NEAR(std::sqrt(moving * moving - still * still), 0.5, 0.03);
 }
 
 TEST_F(SessionConsistency, CapturesOfAScopeThatTurnsAreComparedEachThroughItsOwnLens) {

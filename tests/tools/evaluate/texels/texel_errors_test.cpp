@@ -7,6 +7,7 @@
 #include "firmware-host/files/surface_file.hpp"
 #include "tests/firmware-host/files/temporary_folder.hpp"
 #include "tests/tools/evaluate/ball_scene.hpp"
+#include "tools/evaluate/stated_errors.hpp"
 
 namespace orcart {
 namespace {
@@ -26,10 +27,11 @@ class TexelErrors : public ::testing::Test {
     write_views({0, 0, 0});
   }
 
-  /// One view of chance for each turn.
-  void write_views(const std::vector<double>& turns_rad) {
+  /// One view of chance for each turn; `velocity` is the end of each line, with its commas.
+  void write_views(const std::vector<double>& turns_rad, const std::string& velocity = "") {
     RandomStream random(7, 1);
-    std::string csv = "image,m00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23,turn_rad\n";
+    std::string csv = "image,m00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23,turn_rad";
+    csv += velocity.empty() ? "\n" : ",vx_mm_s,vy_mm_s,vz_mm_s,wx_rad_s,wy_rad_s,wz_rad_s\n";
     for (const double turn_rad : turns_rad) {
       const auto X = view_of_chance(ball_.scene(), random);
       ASSERT_TRUE(X);
@@ -41,7 +43,7 @@ class TexelErrors : public ::testing::Test {
                         column < 3 ? X->rotation(row, column) : X->translation_mm[row]);
           csv += number;
         }
-      csv += "," + std::to_string(turn_rad) + "\n";
+      csv += "," + std::to_string(turn_rad) + velocity + "\n";
     }
     folder_.write("views.csv", csv);
   }
@@ -122,6 +124,29 @@ TEST_F(TexelErrors, GrowWithTheTrackersNoise) {
   const auto picture = read_picture(folder_ / "map.png");
   ASSERT_TRUE(picture);
   EXPECT_EQ(picture->width_px, 640);
+}
+
+TEST_F(TexelErrors, OfTimeGrowWithTheVelocityThatTheViewsTell) {
+  auto ask = command("map.ply");
+  ask.model = with_time(ask.model, 0.02);
+  const auto made_with = [&](const std::string& velocity) {
+    write_views({0, 0, 0}, velocity);
+    return made(ask);
+  };
+  const auto unsaid = made_with(""), unknown = made_with(",,,,,,"), still = made_with(",0,0,0,0,0,0"),
+             fast = made_with(",60,80,0,0,0,0");
+  ASSERT_TRUE(unsaid && unknown && still && fast);
+  EXPECT_EQ(unknown->rms_mm.mean, unsaid->rms_mm.mean) << "as the model assumes";
+  EXPECT_LT(still->rms_mm.mean, unsaid->rms_mm.mean);
+  // 100 mm/s by 20 ms is 2 mm along the wall, and more where it slants.
+  EXPECT_GT(std::sqrt(std::pow(fast->rms_mm.mean, 2) - std::pow(still->rms_mm.mean, 2)), 1.9);
+  EXPECT_GE(fast->drawn.coverage.share(), 0.93) << "the draws move as fast";
+  EXPECT_LE(fast->drawn.coverage.share(), 0.97);
+  EXPECT_EQ(unknown->velocities.assumed, 3U);
+  EXPECT_NE(text_of(*fast).find("velocity: of 3 views told, of 0 assumed; those told move by 100.0 mm/s"),
+            std::string::npos)
+      << text_of(*fast);
+  EXPECT_NE(json_of(*fast).find("\"velocity\": {\"told\": 3, \"assumed\": 0"), std::string::npos);
 }
 
 TEST_F(TexelErrors, NothingIsWrittenWhereNothingIsPainted) {
