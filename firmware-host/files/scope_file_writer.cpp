@@ -124,7 +124,10 @@ std::string covariance_text(const ScopeModel& scope) {
            square("hand_eye", *scope.hand_eye_covariance);
   if (scope.window_covariance)
     out +=
-        "# Of the window's place, X_CE, along C's axes in mm.\n" + square("window", *scope.window_covariance);
+        "# Of the window's place, X_CE, along C's axes in mm; 0 across where E is the point in which C's z "
+        "axis "
+        "leaves it.\n" +
+        square("window", *scope.window_covariance);
   return out;
 }
 

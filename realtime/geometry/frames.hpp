@@ -11,7 +11,8 @@ struct R {};  ///< reference marker, fixed to the patient
 struct S {};  ///< scope marker, on the shaft or on the camera head
 struct L {};  ///< second marker of a scope that turns, on whichever of light post and head S is not on
 struct C {};  ///< camera: origin at the optical centre, x right, y down, z forward
-struct E {};  ///< centre of the distal window (what crosshair, distances and tip errors belong to)
+struct E {
+};  ///< where C's z axis leaves the distal window (what crosshair, distances and tip errors belong to)
 struct P {};  ///< pointer tip
 
 /// A point in frame A, millimetres.

@@ -52,7 +52,7 @@ struct ScopeModel {
   double cone_half_angle_rad = 0;  ///< of the viewing cone about C's z axis: what the mapper clips with
   double far_mm = 60;              ///< paint nothing beyond this distance from C
   Pose<S, C> X_SC;                 ///< hand-eye: camera in scope marker
-  Pose<C, E> X_CE;                 ///< distal window centre in camera
+  Pose<C, E> X_CE;                 ///< distal window in camera: on its z axis, unless a file says otherwise
   FallOff fall_off;
   Medium medium = Medium::air;
   std::string calibrated_on;        ///< ISO date
@@ -65,7 +65,8 @@ struct ScopeModel {
   /// they were independent.
   std::optional<LensCovariance> lens_covariance;
   std::optional<TwistCovariance> hand_eye_covariance;  ///< of X_SC: a twist in C
-  std::optional<Eigen::Matrix3d> window_covariance;    ///< of X_CE's place in C, mm^2
+  /// Of X_CE's place in C, mm^2. Nothing across C's z axis where E is on it by its definition.
+  std::optional<Eigen::Matrix3d> window_covariance;
 };
 
 }  // namespace orcart

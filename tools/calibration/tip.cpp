@@ -96,6 +96,12 @@ double deviation_by_lens_mm(const std::vector<const BoardView*>& views, const Le
   return std::sqrt(std::max(0.0, slope.dot(covariance * slope)));
 }
 
+std::optional<double> middle_beside_mm(const ScopeModel& scope, double window_mm) {
+  const auto middle = direction_of(scope.lens, {scope.mask.cx_px, scope.mask.cy_px});
+  if (!middle || !(scope.mask.radius_px > 0)) return std::nullopt;
+  return std::abs(window_mm) * middle->head<2>().norm() / middle->z();
+}
+
 /// Few views know their own scatter badly: the deviation of both parts, as much wider as Student's 95 % is
 /// than the normal one, with the degrees of freedom of the sum (Satterthwaite 1946).
 double together_mm(double by_views_mm, std::size_t views, double by_lens_mm) {
@@ -173,6 +179,7 @@ Result<TipCalibration> calibrate_tip(const std::vector<BoardView>& views,
         "left "
         "out: run orcart calibrate camera again");
   result.deviation_mm = together_mm(result.fit.deviation_mm, result.views.size(), result.lens_mm);
+  result.middle_mm = middle_beside_mm(scope, result.fit.window_mm);
   result.scope.X_CE = {};
   result.scope.X_CE.translation_mm.z() = result.fit.window_mm;
   result.scope.window_covariance = Eigen::Matrix3d::Zero();

@@ -1,8 +1,9 @@
-// Where the scope's distal window lies before the optical centre, from distances to a board that are known:
-// the paper's tip localisation, and its error.
+// How far before the optical centre its axis leaves the distal window, from distances to a board that are
+// known: the paper's tip localisation, and its error.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "realtime/optics/scope_model.hpp"
@@ -41,12 +42,18 @@ struct TipCommand {
   Pattern pattern;
 };
 struct TipCalibration {
-  ScopeModel scope;  ///< the passport given, with X_CE and its covariance
+  /// The passport given, with X_CE and its covariance: E is on C's z axis by its definition, so all that is
+  /// not known of it is along that axis.
+  ScopeModel scope;
   std::vector<TipView> views;
   TipFit fit;
   double lens_mm =
       0;  ///< standard deviation of the window's place by what the lens's calibration leaves open
   double deviation_mm = 0;  ///< of the window's place, all in all: as the passport has it
+  /// In the window, between C's z axis and the ray through the middle of the picture's circle: the lenses
+  /// stand about that ray, so the glass's own middle may be as far from E. Nothing where the passport has no
+  /// circle.
+  std::optional<double> middle_mm;
 };
 
 /// The same from boards already found. One distance a view; a view without corners is noted and not used.

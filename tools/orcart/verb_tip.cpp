@@ -32,10 +32,14 @@ std::string answer(const TipCalibration& c, bool as_json) {
       "views "
       "leave %.3f, the lens %.3f)\nerror of a distance, each view left out in turn: mean %.3f, s.d. %.3f, "
       "max %.3f "
-      "mm over %zu views\n",
+      "mm over %zu views\nit is the point in which the camera's axis leaves the window: nothing is measured "
+      "across",
       fit.window_mm, c.deviation_mm, fit.window_mm - 1.96 * c.deviation_mm,
       fit.window_mm + 1.96 * c.deviation_mm, fit.deviation_mm, c.lens_mm, fit.mean_mm, fit.sd_mm,
       fit.worst_mm, c.views.size());
+  out += c.middle_mm
+             ? json::format("; the ray of the circle's middle leaves it %.2f mm beside\n", *c.middle_mm)
+             : "\n";
   for (std::size_t i = 0; i < c.views.size(); ++i) {
     const TipView& v = c.views[i];
     out += json::format("  %-32s known %8.3f mm, from the optical centre %8.3f mm, error %+.3f mm\n",
@@ -53,6 +57,7 @@ std::string answer(const TipCalibration& c, bool as_json) {
          ", \"deviation_mm\": " + json::number(c.deviation_mm) +
          ", \"deviation_by_views_mm\": " + json::number(fit.deviation_mm) +
          ", \"deviation_by_lens_mm\": " + json::number(c.lens_mm) +
+         ", \"circle_middle_beside_mm\": " + json::number(c.middle_mm.value_or(NAN)) +
          ", \"covariance\": " + json::numbers(Eigen::VectorXd(c.scope.window_covariance->reshaped())) +
          ", \"scale\": " + json::number(fit.scale) +
          ", \"scale_deviation\": " + json::number(fit.scale_deviation) +

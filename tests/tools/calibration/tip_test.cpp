@@ -127,6 +127,32 @@ TEST(Tip, NotesALensOfWhichNobodySaysHowWellItIsKnown) {
   EXPECT_EQ(told->lens_mm, 0);
 }
 
+TEST(Tip, IsOnTheAxisByItsDefinitionAndSaysHowFarTheCirclesMiddleLiesBeside) {
+  ScopeModel scope;
+  scope.width_px = 640, scope.height_px = 480;
+  scope.lens = testing::test_lens(LensModel::brown);
+  std::vector<Pose<C, B>> poses;
+  const auto boards = testing::simulated_views(
+      scope.lens, {.views = 4, .noise_px = 0.1, .tilt_rad = 0.1, .nearest_mm = 20, .farthest_mm = 40},
+      &poses);
+  std::vector<double> distances_mm;
+  for (const auto& X_CB : poses) distances_mm.push_back(*axis_distance_mm(X_CB) - 2);
+  const auto without = calibrate_tip(boards, distances_mm, scope);
+  ASSERT_TRUE(without) << without.error().message;
+  EXPECT_FALSE(without->middle_mm) << "the passport has no circle";
+  // A circle whose middle is seen atan(0.1) off the axis.
+  const Eigen::Vector2d middle = project(scope.lens, {0.06, -0.08, 1}).value();
+  scope.mask = {.cx_px = middle.x(), .cy_px = middle.y(), .radius_px = 200};
+  const auto told = calibrate_tip(boards, distances_mm, scope);
+  ASSERT_TRUE(told) << told.error().message;
+  EXPECT_NEAR(told->middle_mm.value(), 0.1 * told->scope.X_CE.translation_mm.z(), 1e-6);
+  EXPECT_TRUE(told->scope.X_CE.translation_mm.head<2>().isZero(0));
+  Eigen::Matrix3d across = *told->scope.window_covariance;
+  EXPECT_GT(across(2, 2), 0);
+  across(2, 2) = 0;
+  EXPECT_TRUE(across.isZero(0));
+}
+
 TEST(Tip, TheAxisMeetsATiltedBoardWhereItIs) {
   const Pose<C, B> X_CB =
       testing::board_before(30, {0.4, -0.3, 0.2});  // its middle lies on the axis at 30 mm
