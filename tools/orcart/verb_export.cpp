@@ -14,7 +14,8 @@ namespace {
 
 constexpr const char* kExample =
     "Into the folder: capture-0001.png, ... as they were painted; views.csv with the camera's poses on the "
-    "surface, how far the\nlight post was turned and how fast the scope moved, where the session knows it, for\n"
+    "surface, how far the\nlight post was turned and how fast the scope moved, where the session knows it, "
+    "for\n"
     "orcart paint and evaluate; poses.csv with the scope's marker in the patient's reference, for orcart "
     "calibrate handeye\n"
     "--poses-in reference; scope.toml and registration.toml as they were used. What was undone is left "
