@@ -380,11 +380,15 @@ Eigen::AlignedBox3f Painter::touched_by(std::uint64_t change) const noexcept {
   return remembered ? s.touched[change % s.touched.size()] : kEverything;
 }
 
-std::uint32_t Painter::atlas_texture() const noexcept {
-  return state_->atlas.id();
-}
-std::uint32_t Painter::record_texture() const noexcept {
-  return state_->records.id();
+PaintedAtlas Painter::painted() const noexcept {
+  const State& s = *state_;
+  PaintedAtlas atlas{.colour_texture = s.atlas.id(), .record_texture = s.records.id()};
+  if (!s.by_processor) return atlas;
+  const TexelMemory& memory = s.by_processor->up_to_date();
+  atlas.colours = memory.colours;
+  atlas.records = memory.records;
+  atlas.width_texels = memory.width_texels;
+  return atlas;
 }
 PictureCopy Painter::picture_copy() const noexcept {
   return state_->picture[0].copy();

@@ -33,6 +33,16 @@ struct PaintReport {
   std::uint32_t texels = 0;  ///< texels of the charts that were gone through
 };
 
+/// What is on the surface, wherever that is kept.
+struct PaintedAtlas {
+  std::uint32_t colour_texture = 0;  ///< GL name, RGBA8, premultiplied by alpha
+  std::uint32_t record_texture = 0;  ///< GL name, RGBA16UI, a TexelRecord each
+  // The same in memory, row 0 first, where the processor paints; else none.
+  const std::uint32_t* colours = nullptr;  ///< the first channel in the lowest byte
+  const TexelRecord* records = nullptr;
+  int width_texels = 0;
+};
+
 namespace gles {
 class PictureTexture;
 }
@@ -78,8 +88,7 @@ class Painter {
   std::uint64_t changes() const noexcept;
   Eigen::AlignedBox3f touched_by(std::uint64_t change) const noexcept;
 
-  std::uint32_t atlas_texture() const noexcept;          ///< GL name, RGBA8, colour premultiplied by alpha
-  std::uint32_t record_texture() const noexcept;         ///< GL name, RGBA16UI, a TexelRecord each
+  PaintedAtlas painted() const noexcept;                 ///< until the next change
   const gles::PictureTexture& picture() const noexcept;  ///< the newest upload
   PictureCopy picture_copy() const noexcept;             ///< as it ended up
 

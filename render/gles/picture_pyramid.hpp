@@ -29,6 +29,7 @@ class PicturePyramid {
 
   /// Halves `plane`, which is level 0 and of the size given at creation.
   void build(const PlaneView& plane) noexcept;
+  bool keeps_all() const noexcept { return keeps_ == Keeps::all_levels; }
   int levels() const noexcept { return in_memory_.count - 1; }
   /// `number` 1 is half as fine as the plane; tight rows. 0 where all are kept.
   const std::uint8_t* level(int number) const noexcept {

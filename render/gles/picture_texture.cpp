@@ -32,15 +32,25 @@ PictureTexture::Plane::Plane(GLenum internal_format, GLenum upload_format, Pictu
 
 void PictureTexture::Plane::upload(const ImagePlane& from) noexcept {
   const auto* pixels = reinterpret_cast<const std::uint8_t*>(from.data + from.offset_bytes);
+  pyramid.build({pixels, from.stride_bytes, width, height});
+  unsent = pyramid.keeps_all();
+  if (unsent) return;
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, static_cast<GLint>(from.stride_bytes) / channels);
+  send(0, pixels);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  for (int level = 1; level <= pyramid.levels(); ++level) send(level, pyramid.level(level));
+}
+
+void PictureTexture::Plane::send(int level, const std::uint8_t* pixels) const noexcept {
   glBindTexture(GL_TEXTURE_2D, texture.id());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, static_cast<GLint>(from.stride_bytes) / channels);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, format, GL_UNSIGNED_BYTE, pixels);
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-  pyramid.build({pixels, from.stride_bytes, width, height});
-  for (int level = 1; level <= pyramid.levels(); ++level)
-    glTexSubImage2D(GL_TEXTURE_2D, level, 0, 0, width >> level, height >> level, format, GL_UNSIGNED_BYTE,
-                    pyramid.level(level));
+  glTexSubImage2D(GL_TEXTURE_2D, level, 0, 0, width >> level, height >> level, format, GL_UNSIGNED_BYTE,
+                  pixels);
+}
+
+void PictureTexture::Plane::send_kept() const noexcept {
+  for (int level = 0; unsent && level <= pyramid.levels(); ++level) send(level, pyramid.level(level));
+  unsent = false;
 }
 
 // There are drivers (kms_swrast for one) that import a foreign buffer and then read nothing there.
@@ -147,6 +157,8 @@ PicturePlanes PictureTexture::in_memory() const noexcept {
 }
 
 void PictureTexture::bind(const Uniforms& uniforms, int unit) const noexcept {
+  luma().send_kept();
+  chroma().send_kept();
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(GL_TEXTURE_2D, luma().texture.id());
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit) + 1);

@@ -25,7 +25,8 @@ class PictureTexture {
   /// The picture in memory: where all levels are kept, and the GPU does not copy for itself.
   PicturePlanes in_memory() const noexcept;
 
-  /// Binds to texture units `unit` and `unit + 1` and sets the uniforms of shaders/picture.glsl.
+  /// Binds to texture units `unit` and `unit + 1` and sets the uniforms of shaders/picture.glsl. A picture
+  /// that was kept in memory goes up to the GPU only here.
   struct Uniforms {
     GLint format, luma, chroma, size;
   };
@@ -37,11 +38,14 @@ class PictureTexture {
   struct Plane {
     Plane(GLenum internal_format, GLenum upload_format, PicturePyramid levels);
     void upload(const ImagePlane& from) noexcept;
+    void send(int level, const std::uint8_t* pixels) const noexcept;
+    void send_kept() const noexcept;  ///< if they have not been
 
     PicturePyramid pyramid;
     int width, height, channels;
     GLenum format;
     Texture texture;
+    mutable bool unsent = false;  ///< newer in memory
   };
 
   /// Those that hold the picture.

@@ -19,6 +19,7 @@
 #include "render/hud/status_panel.hpp"
 #include "render/shaders/shaders.hpp"
 #include "render/views/scope_outline.hpp"
+#include "render/views/software/processor_inset.hpp"
 #include "render/views/surface_view.hpp"
 
 namespace orcart {
@@ -58,7 +59,8 @@ struct Screen::State {
     bool operator==(const Told&) const = default;
   };
   std::optional<Told> told;
-  gles::DmaBufFramebuffers shared{4};  ///< targets in dma-bufs, drawn into without a copy
+  gles::DmaBufFramebuffers shared{4};             ///< targets in dma-bufs, drawn into without a copy
+  std::optional<ProcessorInset> processor_inset;  ///< where the processor draws
   gles::Program inset;
   gles::VertexArray no_attributes;
   gles::PictureTexture::Uniforms picture_uniforms{};
@@ -69,17 +71,29 @@ struct Screen::State {
   bool reads_bgra = false;
 
   Result<void> make_inset();
+  Result<void> make_gpu_inset();
   void warm_up();
   void redraw(const ScreenState& state, const Painter& painter) noexcept;
   void show_status(const Told& now, GLuint into) noexcept;
-  void draw_inset(const gles::PictureTexture& live, const CircularMask& mask) noexcept;
+  void draw_inset(const gles::PictureTexture& live, const CircularMask& mask, GLuint into) noexcept;
   GLuint shared_target(const ImageDescriptor& target) noexcept;
   bool read_into(const ImageDescriptor& target) noexcept;
 };
 
 Result<void> Screen::State::make_inset() {
+  no_attributes = gles::make_vertex_array();
+  if (settings.draw_by == PaintBy::gpu) return make_gpu_inset();
+  auto made = ProcessorInset::create(layout.inset_centre.x, layout.inset_centre.y, layout.inset_radius_px,
+                                     static_cast<float>(scope.lens.fx_px / scope.lens.fy_px));
+  if (!made) return tl::unexpected(made.error());
+  processor_inset = std::move(*made);
+  return {};
+}
+
+Result<void> Screen::State::make_gpu_inset() {
   const std::string fragment = std::string(shaders::dialect_glsl) + shaders::paint_uniforms_glsl +
-                               shaders::picture_textures_glsl + shaders::picture_glsl + shaders::inset_frag;
+                               shaders::picture_textures_glsl + shaders::picture_glsl + shaders::inset_glsl +
+                               shaders::inset_frag;
   auto program = gles::make_program("inset", shaders::inset_vert, fragment);
   if (!program) return tl::unexpected(program.error());
   inset = std::move(*program);
@@ -93,7 +107,6 @@ Result<void> Screen::State::make_inset() {
   glUniform1f(gles::uniform(inset, "u_aspect"), static_cast<float>(scope.lens.fx_px / scope.lens.fy_px));
   glUniform1f(gles::uniform(inset, "u_radius_px"), radius);
   picture_uniforms = gles::PictureTexture::uniforms_of(inset);
-  no_attributes = gles::make_vertex_array();
   return {};
 }
 
@@ -108,7 +121,8 @@ Result<Screen> Screen::create(const Surface& surface, const AtlasLayout& layout,
                                    .height_px = static_cast<int>(state->layout.view.height),
                                    .seen_from = settings.seen_from,
                                    .colour_by = settings.colour_by,
-                                   .most_triangles = settings.most_triangles});
+                                   .most_triangles = settings.most_triangles,
+                                   .draw_by = settings.draw_by});
   if (!view) return tl::unexpected(view.error());
   state->view.push_back(std::move(*view));
   auto canvas = HudCanvas::create(
@@ -137,15 +151,17 @@ void Screen::State::warm_up() {
   Eye eye;
   eye.position_mm = {0, 0, 1};
   view[0].draw(eye, {unpainted.id(), unknown.id()}, {});
-  std::vector<std::byte> black(packed_bytes(PixelFormat::rgba8888, scope.width_px, scope.height_px));
-  gles::PictureTexture live(scope.width_px, scope.height_px);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
   glViewport(0, 0, settings.width_px, settings.height_px);
+  draw_column_and_bar(canvas[0], layout, {}, InsetContent::blank);
+  glFinish();
+  if (settings.draw_by == PaintBy::processor) return;
+  std::vector<std::byte> black(packed_bytes(PixelFormat::rgba8888, scope.width_px, scope.height_px));
+  gles::PictureTexture live(scope.width_px, scope.height_px);
   for (const PixelFormat format : {PixelFormat::yuyv, PixelFormat::nv12, PixelFormat::rgba8888}) {
     live.upload(packed_image(black.data(), format, scope.width_px, scope.height_px));
-    draw_inset(live, scope.mask);
+    draw_inset(live, scope.mask, framebuffer.id());
   }
-  draw_column_and_bar(canvas[0], layout, {}, InsetContent::blank);
   glFinish();
 }
 
@@ -154,7 +170,12 @@ Screen::Screen(Screen&&) noexcept = default;
 Screen& Screen::operator=(Screen&&) noexcept = default;
 Screen::~Screen() = default;
 
-void Screen::State::draw_inset(const gles::PictureTexture& live, const CircularMask& mask) noexcept {
+void Screen::State::draw_inset(const gles::PictureTexture& live, const CircularMask& mask,
+                               GLuint into) noexcept {
+  if (processor_inset) {
+    processor_inset->draw(live.in_memory(), mask, into);
+    return;
+  }
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glUseProgram(inset.id());
@@ -173,6 +194,7 @@ void Screen::State::show_status(const Told& now, GLuint into) noexcept {
   if (told != now) {
     glBindFramebuffer(GL_FRAMEBUFFER, status_framebuffer.id());
     draw_column_and_bar(canvas[0], layout, now.status, now.inset);
+    if (processor_inset) processor_inset->lay_on(status_framebuffer.id());
     told = now;
   }
   glBindFramebuffer(GL_READ_FRAMEBUFFER, status_framebuffer.id());
@@ -195,7 +217,7 @@ void Screen::State::redraw(const ScreenState& state, const Painter& painter) noe
        ++i) {
     changed.extend(painter.touched_by(i));
   }
-  view[0].draw(state.eye, {painter.atlas_texture(), painter.record_texture()}, changed);
+  view[0].draw(state.eye, painter.painted(), changed);
   drawn = true;
   drawn_version = state.paint_version;
   drawn_changes = now;
@@ -204,6 +226,7 @@ void Screen::State::redraw(const ScreenState& state, const Painter& painter) noe
 
 bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageDescriptor& target) noexcept {
   State& s = *state_;
+  if (s.settings.draw_by == PaintBy::processor && painter.painted().colours == nullptr) return false;
   s.redraw(state, painter);
   const bool copies = target.planes[0].data != nullptr;
   const GLuint into = copies ? s.framebuffer.id() : s.shared_target(target);
@@ -222,7 +245,7 @@ bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageD
   draw_banners(canvas, s.layout, state.status);
   canvas.flush();
   glViewport(0, 0, s.settings.width_px, s.settings.height_px);
-  if (live) s.draw_inset(painter.picture(), optics.mask);
+  if (live) s.draw_inset(painter.picture(), optics.mask, into);
   if (copies) return s.read_into(target);
   glFinish();  // the panel does not wait for a renderer without fences
   return true;
@@ -269,9 +292,10 @@ Result<AtlasPicture> picture_of_surface(const Surface& surface, const AtlasLayou
                                    .height_px = height,
                                    .seen_from = settings.seen_from,
                                    .colour_by = settings.colour_by,
-                                   .most_triangles = surface.mesh.triangles.size()});
+                                   .most_triangles = surface.mesh.triangles.size(),
+                                   .draw_by = settings.draw_by});
   if (!view) return tl::unexpected(view.error());
-  view->draw(eye, {painter.atlas_texture(), painter.record_texture()}, {});
+  view->draw(eye, painter.painted(), {});
   std::vector<std::uint8_t> fine(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   glBindFramebuffer(GL_FRAMEBUFFER, view->framebuffer());
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, fine.data());

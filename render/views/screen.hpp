@@ -23,6 +23,7 @@ struct ScreenSettings {
       SeenFrom::outside;  ///< inside: the wall nearest to the eye is a glass shell, so that one looks in
   ColourBy colour_by = ColourBy::picture;
   std::size_t most_triangles = 50'000;  ///< see SurfaceViewSettings
+  PaintBy draw_by = PaintBy::gpu;       ///< surface and inset; processor: only with a painter that paints so
 };
 
 /// What changes from picture to picture.
@@ -47,7 +48,8 @@ class Screen {
   ~Screen();
 
   /// Draws into `target`, of the settings' size: CPU memory, xrgb8888 or rgba8888, by reading back; or an
-  /// xrgb8888 dma-buf that EGL can import, without a copy and waited for. False where it is none of these.
+  /// xrgb8888 dma-buf that EGL can import, without a copy and waited for. False where it is none of these, or
+  /// where the processor should draw what it has not painted.
   bool draw(const ScreenState& state, const Painter& painter, const ImageDescriptor& target) noexcept;
 
  private:

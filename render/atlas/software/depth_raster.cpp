@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-// Vectors whose size is known only at run time have no place in wide.hpp.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "render/shaders/wide_targets.hpp"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/atlas/software/depth_raster.cpp"
 #include <hwy/foreach_target.h>

@@ -8,7 +8,7 @@
 #endif
 
 #include "render/atlas/software/depth_job.hpp"
-#include "render/atlas/software/wide.hpp"
+#include "render/shaders/wide.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace orcart::HWY_NAMESPACE {

@@ -43,6 +43,14 @@ void ProcessorTexels::paint(std::span<const std::uint32_t> cells, std::span<cons
 
 void ProcessorTexels::forget(std::span<const std::uint32_t> tiles) noexcept {
   for (const std::uint32_t tile : tiles) forgotten_[tile] = 1;
+  some_forgotten_ = some_forgotten_ || !tiles.empty();
+}
+
+const TexelMemory& ProcessorTexels::up_to_date() noexcept {
+  for (std::uint32_t tile = 0; some_forgotten_ && tile < forgotten_.size(); ++tile)
+    if (forgotten_[tile] != 0) read_again(tile);
+  some_forgotten_ = false;
+  return job_.atlas;
 }
 
 void ProcessorTexels::clear() noexcept {

@@ -26,9 +26,12 @@ class ProcessorTexels {
   /// Paints these cells, which lie in these tiles, of both atlases.
   void paint(std::span<const std::uint32_t> cells, std::span<const std::uint32_t> tiles,
              const PaintUniforms& uniforms, const gles::PicturePlanes& picture) noexcept;
-  /// The drawn atlas was changed there by others: it is read back before these tiles are painted again.
+  /// The drawn atlas was changed there by others: it is read back before these tiles are painted or shown
+  /// again.
   void forget(std::span<const std::uint32_t> tiles) noexcept;
   void clear() noexcept;
+  /// The atlas in memory, with what others changed.
+  const TexelMemory& up_to_date() noexcept;
 
  private:
   void read_again(std::uint32_t tile) noexcept;
@@ -42,6 +45,7 @@ class ProcessorTexels {
   std::vector<std::uint32_t> colours_;
   std::vector<TexelRecord> records_;
   std::vector<std::uint8_t> forgotten_;  ///< by tile
+  bool some_forgotten_ = false;
 };
 
 }  // namespace orcart

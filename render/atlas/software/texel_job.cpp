@@ -5,8 +5,7 @@
 #include <array>
 #include <bit>
 
-// Vectors whose size is known only at run time cannot be members of the rules.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "render/shaders/wide_targets.hpp"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/atlas/software/texel_job.cpp"
 #include <hwy/foreach_target.h>

@@ -98,10 +98,13 @@ inline CutoutPatch whole(const Surface& surface, const Pose<M, C>& X_MC,
 }
 
 /// With whom the program of tests was built for.
-inline PainterSettings painted_by(PainterSettings settings) {
 #ifdef ORCART_PAINT_BY_PROCESSOR
-  settings.paint_by = PaintBy::processor;
+inline constexpr PaintBy kPaintBy = PaintBy::processor;
+#else
+inline constexpr PaintBy kPaintBy = PaintBy::gpu;
 #endif
+inline PainterSettings painted_by(PainterSettings settings) {
+  settings.paint_by = kPaintBy;
   return settings;
 }
 

@@ -49,7 +49,8 @@ class CoarseView : public ::testing::Test {
     testing::shared_context();
     surface_ = scenes::sphere({0, 0, 35}, 15, 40);
     layout_ = *build_atlas(surface_.mesh, {.texel_mm = 0.3});
-    painter_ = std::make_unique<Painter>(std::move(*Painter::create(surface_, layout_, scope_, {})));
+    painter_ = std::make_unique<Painter>(
+        std::move(*Painter::create(surface_, layout_, scope_, scenes::painted_by({}))));
     auto ramp = scenes::ramp(scope_);
     painter_->upload(ramp.descriptor());
     painter_->paint(scenes::whole(surface_, {}), 1);
@@ -60,7 +61,8 @@ class CoarseView : public ::testing::Test {
                                      {.width_px = kWidth,
                                       .height_px = kHeight,
                                       .seen_from = seen_from,
-                                      .most_triangles = most_triangles}));
+                                      .most_triangles = most_triangles,
+                                      .draw_by = scenes::kPaintBy}));
   }
   Pixels drawn(Screen& screen) {
     Pixels pixels{kWidth, kHeight,

@@ -21,7 +21,7 @@ class ScreenTest : public ::testing::Test {
     surface_ = std::move(surface);
     layout_ = std::move(*build_atlas(surface_.mesh, {.texel_mm = 0.3}));
     painter_ = std::make_unique<Painter>(
-        std::move(*Painter::create(surface_, layout_, scope_, {.seen_from = seen_from})));
+        std::move(*Painter::create(surface_, layout_, scope_, scenes::painted_by({.seen_from = seen_from}))));
     settings_.seen_from = seen_from;
     screen_ = std::make_unique<Screen>(make_screen());
     state_.eye = eye_on(surface_.mesh, {0, 0, -1}, {0, -1, 0});
@@ -57,7 +57,7 @@ class ScreenTest : public ::testing::Test {
   }
 
   ScopeModel scope_ = scenes::scope();
-  ScreenSettings settings_{.width_px = kWidth, .height_px = kHeight};
+  ScreenSettings settings_{.width_px = kWidth, .height_px = kHeight, .draw_by = scenes::kPaintBy};
   PanelLayout layout_of_panel_ = panel_layout(kWidth, kHeight);
   Surface surface_;
   AtlasLayout layout_;
@@ -193,8 +193,8 @@ TEST_F(ScreenTest, RefusesABufferItCannotWrite) {
 TEST_F(ScreenTest, MakesAFigureOfTheSurfaceAlone) {
   use(scenes::sphere({0, 0, 40}, 22, 30));
   paint(250, 20, 20, {}, 1);
-  const auto figure =
-      picture_of_surface(surface_, layout_, *painter_, state_.eye, {.width_px = 300, .height_px = 200});
+  const auto figure = picture_of_surface(surface_, layout_, *painter_, state_.eye,
+                                         {.width_px = 300, .height_px = 200, .draw_by = scenes::kPaintBy});
   ASSERT_TRUE(figure.has_value()) << figure.error().message;
   const Pixels p{figure->width_texels, figure->height_texels, figure->rgba};
   keep_picture(p, "figure");

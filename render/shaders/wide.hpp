@@ -2,11 +2,11 @@
 // Highway's vectors, so compiled once for each processor target of a file that includes Highway's
 // foreach_target.h; not for other files. What a function does is what the GLSL ES specification says of its
 // namesake.
-#if defined(ORCART_RENDER_ATLAS_SOFTWARE_WIDE) == defined(HWY_TARGET_TOGGLE)
-#ifdef ORCART_RENDER_ATLAS_SOFTWARE_WIDE
-#undef ORCART_RENDER_ATLAS_SOFTWARE_WIDE
+#if defined(ORCART_RENDER_SHADERS_WIDE) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORCART_RENDER_SHADERS_WIDE
+#undef ORCART_RENDER_SHADERS_WIDE
 #else
-#define ORCART_RENDER_ATLAS_SOFTWARE_WIDE
+#define ORCART_RENDER_SHADERS_WIDE
 #endif
 
 #include <hwy/highway.h>
@@ -101,6 +101,9 @@ HWY_INLINE real abs(real x) {
 }
 HWY_INLINE real floor(real x) {
   return hn::Floor(x.v);
+}
+HWY_INLINE real fract(real x) {
+  return x - floor(x);
 }
 HWY_INLINE real sqrt(real x) {
   return hn::Sqrt(x.v);
@@ -208,6 +211,9 @@ HWY_INLINE vec3 clamp(const vec3& a, real low, real high) {
 HWY_INLINE vec2 floor(const vec2& a) {
   return {floor(a.x), floor(a.y)};
 }
+HWY_INLINE vec3 mix(const vec3& a, const vec3& b, real share) {
+  return a + (b - a) * share;
+}
 HWY_INLINE vec4 mix(const vec4& a, const vec4& b, real share) {
   return {mix(a.x, b.x, share), mix(a.y, b.y, share), mix(a.z, b.z, share), mix(a.w, b.w, share)};
 }
@@ -226,6 +232,14 @@ HWY_INLINE real from_whole(Whole x) {
 template <int kBit>
 HWY_INLINE real byte_of(Whole word) {
   return from_whole(hn::And(hn::ShiftRight<kBit>(word), hn::Set(Wholes(), 255)));
+}
+
+/// Of channels 0..1, red in the lowest byte.
+HWY_INLINE Whole rgba_of(real red, real green, real blue, real alpha) {
+  const auto byte = [](real channel)
+                        HWY_ATTR { return hn::NearestInt((clamp(channel, 0.0, 1.0) * 255.0).v); };
+  return hn::Or(hn::Or(byte(red), hn::ShiftLeft<8>(byte(green))),
+                hn::Or(hn::ShiftLeft<16>(byte(blue)), hn::ShiftLeft<24>(byte(alpha))));
 }
 
 }  // namespace orcart::HWY_NAMESPACE
