@@ -108,7 +108,8 @@ Result<void> Cart::State::build_painting() {
                                     {.width_px = config.panel.width_px,
                                      .height_px = config.panel.height_px,
                                      .seen_from = config.seen_from,
-                                     .colour_by = config.colour_by});
+                                     .colour_by = config.colour_by,
+                                     .draw_by = paint_by_for(context.render_class())});
   if (!made_screen) return tl::unexpected(made_screen.error());
   screen = std::make_unique<Screen>(std::move(*made_screen));
   return {};

@@ -24,7 +24,8 @@ bool paint_and_draw(std::uint32_t rows, PaintBy by) {
   const ScopeModel scope = scenes::scope();
   if (!layout) return false;
   auto painter = Painter::create(wall, *layout, scope, {.light = LightModel::auto_exposure, .paint_by = by});
-  auto screen = Screen::create(wall, *layout, scope, {.width_px = kPanelWidth, .height_px = kPanelHeight});
+  auto screen = Screen::create(wall, *layout, scope,
+                               {.width_px = kPanelWidth, .height_px = kPanelHeight, .draw_by = by});
   if (!painter || !screen) return false;
   const CutoutPatch patch = scenes::whole(wall, {});
   std::vector<std::byte> picture(packed_bytes(PixelFormat::nv12, scope.width_px, scope.height_px),
@@ -48,8 +49,9 @@ bool paint_and_draw(std::uint32_t rows, PaintBy by) {
   turn_and_draw();
   const int triangles = static_cast<int>(wall.mesh.triangles.size());
   CALLGRIND_START_INSTRUMENTATION;
-  count(by == PaintBy::gpu ? "painting" : "painting_by_processor", triangles, frame);
-  if (by == PaintBy::gpu) count("drawing", triangles, turn_and_draw);
+  const bool gpu = by == PaintBy::gpu;
+  count(gpu ? "painting" : "painting_by_processor", triangles, frame);
+  count(gpu ? "drawing" : "drawing_by_processor", triangles, turn_and_draw);
   CALLGRIND_STOP_INSTRUMENTATION;
   return true;
 }

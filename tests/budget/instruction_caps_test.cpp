@@ -113,8 +113,8 @@ class InstructionCaps : public ::testing::Test {
   }
   void SetUp() override {
     if (!lack.empty()) GTEST_SKIP() << lack;
-    ASSERT_EQ(counts.size(), 12u)
-        << "pedal, tracker, camera, notch, match, mapper, cutout, clip, ranges, painting (twice) and drawing";
+    ASSERT_EQ(counts.size(), 13u) << "pedal, tracker, camera, notch, match, mapper, cutout, clip, ranges, "
+                                     "painting and drawing (twice each)";
   }
   static inline Counts counts;
   static inline std::string lack = "valgrind is not installed";

@@ -79,12 +79,13 @@ std::uint32_t median_of(std::vector<std::uint32_t> values) {
 }
 
 Result<Screen> make_screen(const Surface& surface, const AtlasLayout& layout, const ScopeModel& scope,
-                           const PaintBenchSettings& settings, std::size_t most_triangles) {
+                           const PaintBenchSettings& settings, PaintBy by, std::size_t most_triangles) {
   return Screen::create(surface, layout, scope,
                         {.width_px = kPanelWidth,
                          .height_px = kPanelHeight,
                          .seen_from = settings.seen_from,
-                         .most_triangles = most_triangles});
+                         .most_triangles = most_triangles,
+                         .draw_by = by});
 }
 
 /// The ranges' triangles, all of them to be painted.
@@ -211,16 +212,17 @@ Result<PaintBenchReport> run_paint_bench(const Surface& surface, std::span<const
   CutoutRanges ranges(tree->cluster_count());
   auto mapper = Mapper::create(surface, settings.seen_from, scope, limits);
   if (!mapper) return tl::unexpected(mapper.error());
+  const PaintBy by = settings.by.value_or(paint_by_for(context->render_class()));
   auto painter = Painter::create(surface, *layout, scope,
                                  {.seen_from = settings.seen_from,
                                   .policy = settings.policy,
                                   .highlights = Highlights::yield,
                                   .light = LightModel::auto_exposure,
-                                  .paint_by = settings.by.value_or(paint_by_for(context->render_class()))});
+                                  .paint_by = by});
   if (!painter) return tl::unexpected(painter.error());
-  auto screen = make_screen(surface, *layout, scope, settings, ScreenSettings{}.most_triangles);
+  auto screen = make_screen(surface, *layout, scope, settings, by, ScreenSettings{}.most_triangles);
   if (!screen) return tl::unexpected(screen.error());
-  auto full = make_screen(surface, *layout, scope, settings, surface.mesh.triangles.size());
+  auto full = make_screen(surface, *layout, scope, settings, by, surface.mesh.triangles.size());
   if (!full) return tl::unexpected(full.error());
 
   Bench bench(*context, *painter, *screen, *full);
