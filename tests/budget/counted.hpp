@@ -1,11 +1,18 @@
-// One step for callgrind to count: a dump of its own, named by the step and its size.
+// One step for callgrind to count: a dump of its own, named by the step and its size. For the one file of a program.
 #pragma once
 
 #include <list>
 #include <string>
 
+#include <hwy/nanobenchmark.h>
 #include <hwy/targets.h>
 #include <valgrind/callgrind.h>
+
+// Highway's library times its timer before main(), by an instruction that valgrind does not know on every
+// machine; this takes the place of it, and nobody asks for the answer.
+uint64_t hwy::platform::TimerResolution() {
+  return 1;
+}
 
 namespace orcart::testing {
 

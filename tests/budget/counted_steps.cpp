@@ -18,12 +18,6 @@
 #include "tests/realtime/mapper/mapper_fixture.hpp"
 #include "tests/realtime/sync/sync_samples.hpp"
 
-// Highway's library times its timer before main(), by an instruction that valgrind does not know on every
-// machine; this takes the place of it, and nobody asks for the answer.
-uint64_t hwy::platform::TimerResolution() {
-  return 1;
-}
-
 namespace orcart::testing {
 namespace {
 
