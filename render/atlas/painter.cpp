@@ -55,6 +55,7 @@ struct Painter::State {
   std::uint64_t changes = 0;
   Eigen::AlignedBox3f view_box;  ///< of the view's triangles
   std::uint32_t unit = 0;        ///< of the view
+  std::uint32_t kept_unit = 0;   ///< whose tiles were kept last
   PaintView view;
   TextureMode mode = TextureMode::perspective;
   ViewLight light;
@@ -73,6 +74,10 @@ struct Painter::State {
   PaintReport paint_some() noexcept;
   void paint_by_gpu(std::span<const std::uint32_t> cells) noexcept;
   void changed(std::span<const std::uint32_t> tiles) noexcept;
+  /// Before the driver reads or changes the atlas.
+  void settle() const noexcept {
+    if (by_processor) by_processor->send();
+  }
   bool processor_paints() const noexcept { return by_processor && mode == TextureMode::perspective; }
   void note_change(const Eigen::AlignedBox3f& box) noexcept { touched[++changes % touched.size()] = box; }
 };
@@ -266,6 +271,8 @@ PaintReport Painter::State::paint_some() noexcept {
                            .texels = static_cast<std::uint32_t>(cells.size() * kCellTexels * kCellTexels)};
   if (!report.painted) return report;
   note_change(view_box);
+  if (unit != kept_unit || !processor_paints()) settle();  // else tiles not kept yet are not painted since
+  kept_unit = unit;
   undo[0].keep(unit, touches.tiles());
   if (processor_paints()) {
     by_processor->paint(cells, touches.tiles(), view.uniforms, picture[0].in_memory());
@@ -308,6 +315,7 @@ void Painter::State::paint_by_gpu(std::span<const std::uint32_t> cells) noexcept
 
 bool Painter::undo() noexcept {
   state_->note_change(kEverything);
+  state_->settle();
   const auto tiles = state_->undo[0].undo();
   state_->changed(tiles);
   return !tiles.empty();
@@ -315,6 +323,7 @@ bool Painter::undo() noexcept {
 
 bool Painter::redo() noexcept {
   state_->note_change(kEverything);
+  state_->settle();
   const auto tiles = state_->undo[0].redo();
   state_->changed(tiles);
   return !tiles.empty();
@@ -329,6 +338,7 @@ void Painter::clear() noexcept {
 }
 
 double Painter::coverage() noexcept {
+  state_->settle();
   return state_->coverage[0].update();
 }
 
@@ -337,6 +347,7 @@ AtlasPicture Painter::read_back() const {
                        .height_texels = state_->layout->height_texels};
   picture.rgba.resize(4 * static_cast<std::size_t>(picture.width_texels) *
                       static_cast<std::size_t>(picture.height_texels));
+  state_->settle();
   glBindFramebuffer(GL_FRAMEBUFFER, state_->atlas_framebuffer.id());
   glReadPixels(0, 0, picture.width_texels, picture.height_texels, GL_RGBA, GL_UNSIGNED_BYTE,
                picture.rgba.data());
@@ -356,6 +367,7 @@ AtlasRecords Painter::read_records() const {
                        .height_texels = state_->layout->height_texels};
   records.texels.resize(static_cast<std::size_t>(records.width_texels) *
                         static_cast<std::size_t>(records.height_texels));
+  state_->settle();
   glBindFramebuffer(GL_FRAMEBUFFER, state_->record_framebuffer.id());
   glReadPixels(0, 0, records.width_texels, records.height_texels, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT,
                records.texels.data());
@@ -380,14 +392,19 @@ Eigen::AlignedBox3f Painter::touched_by(std::uint64_t change) const noexcept {
   return remembered ? s.touched[change % s.touched.size()] : kEverything;
 }
 
-PaintedAtlas Painter::painted() const noexcept {
+PaintedAtlas Painter::painted(PaintBy drawn_by) const noexcept {
   const State& s = *state_;
-  PaintedAtlas atlas{.colour_texture = s.atlas.id(), .record_texture = s.records.id()};
-  if (!s.by_processor) return atlas;
-  const TexelMemory& memory = s.by_processor->up_to_date();
-  atlas.colours = memory.colours;
-  atlas.records = memory.records;
-  atlas.width_texels = memory.width_texels;
+  PaintedAtlas atlas;
+  if (drawn_by == PaintBy::gpu) {
+    s.settle();
+    atlas.colour_texture = s.atlas.id();
+    atlas.record_texture = s.records.id();
+  } else if (s.by_processor) {
+    const TexelMemory& memory = s.by_processor->up_to_date();
+    atlas.colours = memory.colours;
+    atlas.records = memory.records;
+    atlas.width_texels = memory.width_texels;
+  }
   return atlas;
 }
 PictureCopy Painter::picture_copy() const noexcept {

@@ -33,11 +33,11 @@ struct PaintReport {
   std::uint32_t texels = 0;  ///< texels of the charts that were gone through
 };
 
-/// What is on the surface, wherever that is kept.
+/// What is on the surface, where it was asked for.
 struct PaintedAtlas {
   std::uint32_t colour_texture = 0;  ///< GL name, RGBA8, premultiplied by alpha
   std::uint32_t record_texture = 0;  ///< GL name, RGBA16UI, a TexelRecord each
-  // The same in memory, row 0 first, where the processor paints; else none.
+  // In memory, row 0 first; none where the processor does not paint.
   const std::uint32_t* colours = nullptr;  ///< the first channel in the lowest byte
   const TexelRecord* records = nullptr;
   int width_texels = 0;
@@ -88,7 +88,8 @@ class Painter {
   std::uint64_t changes() const noexcept;
   Eigen::AlignedBox3f touched_by(std::uint64_t change) const noexcept;
 
-  PaintedAtlas painted() const noexcept;                 ///< until the next change
+  /// For who draws it, until the next change.
+  PaintedAtlas painted(PaintBy drawn_by) const noexcept;
   const gles::PictureTexture& picture() const noexcept;  ///< the newest upload
   PictureCopy picture_copy() const noexcept;             ///< as it ended up
 

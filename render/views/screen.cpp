@@ -217,7 +217,7 @@ void Screen::State::redraw(const ScreenState& state, const Painter& painter) noe
        ++i) {
     changed.extend(painter.touched_by(i));
   }
-  view[0].draw(state.eye, painter.painted(), changed);
+  view[0].draw(state.eye, painter.painted(settings.draw_by), changed);
   drawn = true;
   drawn_version = state.paint_version;
   drawn_changes = now;
@@ -226,7 +226,8 @@ void Screen::State::redraw(const ScreenState& state, const Painter& painter) noe
 
 bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageDescriptor& target) noexcept {
   State& s = *state_;
-  if (s.settings.draw_by == PaintBy::processor && painter.painted().colours == nullptr) return false;
+  if (s.settings.draw_by == PaintBy::processor && painter.painted(PaintBy::processor).colours == nullptr)
+    return false;
   s.redraw(state, painter);
   const bool copies = target.planes[0].data != nullptr;
   const GLuint into = copies ? s.framebuffer.id() : s.shared_target(target);
@@ -295,7 +296,7 @@ Result<AtlasPicture> picture_of_surface(const Surface& surface, const AtlasLayou
                                    .most_triangles = surface.mesh.triangles.size(),
                                    .draw_by = settings.draw_by});
   if (!view) return tl::unexpected(view.error());
-  view->draw(eye, painter.painted(), {});
+  view->draw(eye, painter.painted(settings.draw_by), {});
   std::vector<std::uint8_t> fine(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   glBindFramebuffer(GL_FRAMEBUFFER, view->framebuffer());
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, fine.data());

@@ -1,4 +1,4 @@
-// Memory in, memory out; GL is only told which tiles changed.
+// Memory in, memory out; GL is given tiles that changed.
 #include "render/atlas/software/processor_texels.hpp"
 
 #include <algorithm>
@@ -19,7 +19,8 @@ ProcessorTexels::ProcessorTexels(const TriangleMesh& mesh, const KeptAtlas& atla
   }
   colours_.assign(texels, 0);
   records_.assign(texels, {});
-  forgotten_.assign(texels / (kTileTexels * kTileTexels), 0);
+  newer_.assign(texels / (kTileTexels * kTileTexels), Newer::neither);
+  unsent_.reserve(newer_.size());
   job_.choices = choices;
   job_.depths = depth_.seen();
   job_.atlas = {.width_texels = atlas.size_texels,
@@ -33,22 +34,24 @@ ProcessorTexels::ProcessorTexels(const TriangleMesh& mesh, const KeptAtlas& atla
 
 void ProcessorTexels::paint(std::span<const std::uint32_t> cells, std::span<const std::uint32_t> tiles,
                             const PaintUniforms& uniforms, const gles::PicturePlanes& picture) noexcept {
-  for (const std::uint32_t tile : tiles)
-    if (forgotten_[tile] != 0) read_again(tile);
+  for (const std::uint32_t tile : tiles) {
+    if (newer_[tile] == Newer::in_driver) read_again(tile);
+    if (newer_[tile] == Newer::neither) unsent_.push_back(tile);
+    newer_[tile] = Newer::in_memory;
+  }
   job_.uniforms = uniforms;
   job_.picture = picture;
   paint_cells(job_, cells);
-  send(tiles);
 }
 
 void ProcessorTexels::forget(std::span<const std::uint32_t> tiles) noexcept {
-  for (const std::uint32_t tile : tiles) forgotten_[tile] = 1;
+  for (const std::uint32_t tile : tiles) newer_[tile] = Newer::in_driver;
   some_forgotten_ = some_forgotten_ || !tiles.empty();
 }
 
 const TexelMemory& ProcessorTexels::up_to_date() noexcept {
-  for (std::uint32_t tile = 0; some_forgotten_ && tile < forgotten_.size(); ++tile)
-    if (forgotten_[tile] != 0) read_again(tile);
+  for (std::uint32_t tile = 0; some_forgotten_ && tile < newer_.size(); ++tile)
+    if (newer_[tile] == Newer::in_driver) read_again(tile);
   some_forgotten_ = false;
   return job_.atlas;
 }
@@ -56,7 +59,8 @@ const TexelMemory& ProcessorTexels::up_to_date() noexcept {
 void ProcessorTexels::clear() noexcept {
   std::fill(colours_.begin(), colours_.end(), 0u);
   std::fill(records_.begin(), records_.end(), TexelRecord{});
-  std::fill(forgotten_.begin(), forgotten_.end(), std::uint8_t{0});
+  std::fill(newer_.begin(), newer_.end(), Newer::neither);
+  unsent_.clear();
 }
 
 std::size_t ProcessorTexels::corner_of(std::uint32_t tile) const noexcept {
@@ -75,15 +79,16 @@ void ProcessorTexels::read_again(std::uint32_t tile) noexcept {
   glBindFramebuffer(GL_FRAMEBUFFER, atlas_.record.framebuffer);
   glReadPixels(x, y, kTileTexels, kTileTexels, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT, &records_[corner]);
   glPixelStorei(GL_PACK_ROW_LENGTH, 0);
-  forgotten_[tile] = 0;
+  newer_[tile] = Newer::neither;
 }
 
-void ProcessorTexels::send(std::span<const std::uint32_t> tiles) noexcept {
+void ProcessorTexels::send() noexcept {
+  if (unsent_.empty()) return;
   const int tiles_per_row = atlas_.size_texels / kTileTexels;
   glPixelStorei(GL_UNPACK_ROW_LENGTH, atlas_.size_texels);
   for (const bool records : {false, true}) {
     glBindTexture(GL_TEXTURE_2D, records ? atlas_.record.texture : atlas_.colour.texture);
-    for (const std::uint32_t tile : tiles) {
+    for (const std::uint32_t tile : unsent_) {
       const int x = static_cast<int>(tile) % tiles_per_row * kTileTexels,
                 y = static_cast<int>(tile) / tiles_per_row * kTileTexels;
       const std::size_t corner = corner_of(tile);
@@ -97,6 +102,8 @@ void ProcessorTexels::send(std::span<const std::uint32_t> tiles) noexcept {
     }
   }
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  for (const std::uint32_t tile : unsent_) newer_[tile] = Newer::neither;
+  unsent_.clear();
 }
 
 }  // namespace orcart
