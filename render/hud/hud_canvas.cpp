@@ -2,6 +2,7 @@
 // covers.
 #include "render/hud/hud_canvas.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -121,6 +122,28 @@ void HudCanvas::ring(HudPoint centre, float radius_px, float width_px, Colour co
 
 void HudCanvas::stroke(const Stroke& s, Colour colour) noexcept {
   add({{}, {s.from.x, s.from.y, s.to.x, s.to.y}, colour, {kStroke, 0.5F * s.width_px, s.dash_px, 0}});
+}
+
+HudBox HudCanvas::bounds() const noexcept {
+  if (quads_.empty()) return {};
+  float left = 1e9F, top = 1e9F, right = -1e9F, bottom = -1e9F;
+  const auto extend = [&](float x, float y, float around) {
+    left = std::min(left, x - around);
+    top = std::min(top, y - around);
+    right = std::max(right, x + around);
+    bottom = std::max(bottom, y + around);
+  };
+  for (const Quad& quad : quads_) {
+    if (quad.shape[0] == static_cast<float>(kStroke)) {
+      const float reach = quad.shape[1] + 1;  // as hud.vert draws it, at its corners
+      extend(quad.detail[0], quad.detail[1], 1.5F * reach);
+      extend(quad.detail[2], quad.detail[3], 1.5F * reach);
+    } else {
+      extend(quad.rect.x, quad.rect.y, 0);
+      extend(quad.rect.x + quad.rect.width, quad.rect.y + quad.rect.height, 0);
+    }
+  }
+  return {left, top, right - left, bottom - top};
 }
 
 void HudCanvas::flush() noexcept {

@@ -58,6 +58,8 @@ class HudCanvas {
   };
   void stroke(const Stroke& stroke, Colour colour) noexcept;
 
+  /// Around what has been gathered; of no size where that is nothing.
+  HudBox bounds() const noexcept;
   /// Draws what was gathered into the bound framebuffer, in order, and forgets it. Changes viewport,
   /// blending, program and vertex array; leaves blending and depth test off.
   void flush() noexcept;

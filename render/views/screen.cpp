@@ -41,6 +41,13 @@ AtlasPicture averaged(const std::vector<std::uint8_t>& fine, const ScreenSetting
   return picture;
 }
 
+PixelBox united(const PixelBox& a, const PixelBox& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
+  return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
+}
+
 }  // namespace
 
 struct Screen::State {
@@ -59,6 +66,10 @@ struct Screen::State {
     bool operator==(const Told&) const = default;
   };
   std::optional<Told> told;
+  // What of `framebuffer` is not as view and status pictures are: part of the view (its own pixels), the
+  // rest.
+  PixelBox stale_view;
+  bool stale_status = true;
   gles::DmaBufFramebuffers shared{4};             ///< targets in dma-bufs, drawn into without a copy
   std::optional<ProcessorInset> processor_inset;  ///< where the processor draws
   gles::Program inset;
@@ -74,7 +85,12 @@ struct Screen::State {
   Result<void> make_gpu_inset();
   void warm_up();
   void redraw(const ScreenState& state, const Painter& painter) noexcept;
+  PixelBox whole_view() const noexcept {
+    return {0, 0, view[0].settings().width_px, view[0].settings().height_px};
+  }
+  void show_view(GLuint into) noexcept;
   void show_status(const Told& now, GLuint into) noexcept;
+  void cover(const HudBox& box) noexcept;
   void draw_inset(const gles::PictureTexture& live, const CircularMask& mask, GLuint into) noexcept;
   GLuint shared_target(const ImageDescriptor& target) noexcept;
   bool read_into(const ImageDescriptor& target) noexcept;
@@ -129,6 +145,7 @@ Result<Screen> Screen::create(const Surface& surface, const AtlasLayout& layout,
       {.width_px = settings.width_px, .height_px = settings.height_px, .rows = RowOrder::top_first});
   if (!canvas) return tl::unexpected(canvas.error());
   state->canvas.push_back(std::move(*canvas));
+  state->stale_view = state->whole_view();
   state->picture = gles::make_texture({GL_RGBA8, settings.width_px, settings.height_px});
   auto framebuffer = gles::make_framebuffer(state->picture.id());
   if (!framebuffer) return tl::unexpected(framebuffer.error());
@@ -189,14 +206,29 @@ void Screen::State::draw_inset(const gles::PictureTexture& live, const CircularM
   glActiveTexture(GL_TEXTURE0);
 }
 
+/// Our own picture holds the last one, so what has not changed is there already; a shared one may hold
+/// anything.
+void Screen::State::show_view(GLuint into) noexcept {
+  const bool own = into == framebuffer.id();
+  const PixelBox part = own ? stale_view : whole_view();
+  if (!part.empty())
+    view[0].copy_to(into, static_cast<int>(layout.view.x), static_cast<int>(layout.view.y), part);
+  stale_view = own ? PixelBox{} : whole_view();
+}
+
 /// Words are drawn when what they say has changed, and copied from then on. Leaves `into` bound.
 void Screen::State::show_status(const Told& now, GLuint into) noexcept {
-  if (told != now) {
+  const bool own = into == framebuffer.id(), renewed = told != now;
+  if (renewed) {
     glBindFramebuffer(GL_FRAMEBUFFER, status_framebuffer.id());
     draw_column_and_bar(canvas[0], layout, now.status, now.inset);
     if (processor_inset) processor_inset->lay_on(status_framebuffer.id());
     told = now;
   }
+  const bool kept = own && !renewed && !stale_status && processor_inset;  // the driver's inset blends with it
+  stale_status = !own;
+  glBindFramebuffer(GL_FRAMEBUFFER, into);
+  if (kept) return;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, status_framebuffer.id());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, into);
   for (const HudBox& box : {layout.column, layout.bar}) {
@@ -208,6 +240,20 @@ void Screen::State::show_status(const Told& now, GLuint into) noexcept {
   glBindFramebuffer(GL_FRAMEBUFFER, into);
 }
 
+/// Something was drawn there into our own picture.
+void Screen::State::cover(const HudBox& box) noexcept {
+  const HudBox& view_box = layout.view;
+  const auto left = static_cast<int>(std::floor(box.x - view_box.x)),
+             top = static_cast<int>(std::floor(box.y - view_box.y)),
+             right = static_cast<int>(std::ceil(box.x - view_box.x + box.width)),
+             bottom = static_cast<int>(std::ceil(box.y - view_box.y + box.height));
+  const PixelBox whole = whole_view();
+  const int x = std::clamp(left, 0, whole.width), y = std::clamp(top, 0, whole.height);
+  stale_view = united(stale_view,
+                      {x, y, std::clamp(right, 0, whole.width) - x, std::clamp(bottom, 0, whole.height) - y});
+  stale_status = stale_status || right > whole.width || bottom > whole.height;
+}
+
 void Screen::State::redraw(const ScreenState& state, const Painter& painter) noexcept {
   if (drawn && drawn_version == state.paint_version && drawn_eye == state.eye && view[0].settled()) return;
   constexpr std::uint64_t kRemembered = 16;
@@ -217,7 +263,7 @@ void Screen::State::redraw(const ScreenState& state, const Painter& painter) noe
        ++i) {
     changed.extend(painter.touched_by(i));
   }
-  view[0].draw(state.eye, painter.painted(settings.draw_by), changed);
+  stale_view = united(stale_view, view[0].draw(state.eye, painter.painted(settings.draw_by), changed));
   drawn = true;
   drawn_version = state.paint_version;
   drawn_changes = now;
@@ -232,7 +278,7 @@ bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageD
   const bool copies = target.planes[0].data != nullptr;
   const GLuint into = copies ? s.framebuffer.id() : s.shared_target(target);
   if (into == 0) return false;
-  s.view[0].copy_to(into, static_cast<int>(s.layout.view.x), static_cast<int>(s.layout.view.y));
+  s.show_view(into);
   const bool live = state.show_live && !painter.picture().empty();
   s.show_status({state.status, live ? InsetContent::picture : InsetContent::blank}, into);
   HudCanvas& canvas = s.canvas[0];
@@ -244,6 +290,7 @@ bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageD
                 .cone_half_angle_rad = s.scope.cone_half_angle_rad,
                 .predicted = state.scope_predicted});
   draw_banners(canvas, s.layout, state.status);
+  if (copies) s.cover(canvas.bounds());
   canvas.flush();
   glViewport(0, 0, s.settings.width_px, s.settings.height_px);
   if (live) s.draw_inset(painter.picture(), optics.mask, into);

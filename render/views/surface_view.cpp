@@ -38,16 +38,19 @@ Result<SurfaceView> SurfaceView::create(const Surface& surface, const AtlasLayou
   return self;
 }
 
-void SurfaceView::draw(const Eye& eye, const PaintedAtlas& paint,
-                       const Eigen::AlignedBox3f& changed) noexcept {
+PixelBox SurfaceView::draw(const Eye& eye, const PaintedAtlas& paint,
+                           const Eigen::AlignedBox3f& changed) noexcept {
+  PixelBox part{0, 0, settings_.width_px, settings_.height_px};
   if (looked_ && eye == eye_) {
     const bool was_settled = settled();
     if (!was_settled) refine();
-    shade(paint, pixels_of(!was_settled && settled() ? bounds_ : changed));
-    return;
+    part = pixels_of(!was_settled && settled() ? bounds_ : changed);
+  } else {
+    look(eye);
   }
-  look(eye);
-  shade(paint, {0, 0, settings_.width_px, settings_.height_px});
+  if (!part.empty())
+    drawing_->shade(coarse_indices_ && !settled() ? Fineness::coarse : Fineness::fine, paint, part);
+  return part;
 }
 
 EyeMatrices SurfaceView::matrices() const noexcept {
@@ -91,16 +94,13 @@ void SurfaceView::refine() noexcept {
   refined_ += part.count;
 }
 
-void SurfaceView::shade(const PaintedAtlas& paint, const PixelBox& part) noexcept {
-  if (part.width <= 0 || part.height <= 0) return;
-  drawing_->shade(coarse_indices_ && !settled() ? Fineness::coarse : Fineness::fine, paint, part);
-}
-
-void SurfaceView::copy_to(std::uint32_t framebuffer, int x_px, int y_px) const noexcept {
+void SurfaceView::copy_to(std::uint32_t framebuffer, int x_px, int y_px,
+                          const PixelBox& part) const noexcept {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, drawing_->framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-  glBlitFramebuffer(0, 0, settings_.width_px, settings_.height_px, x_px, y_px, x_px + settings_.width_px,
-                    y_px + settings_.height_px, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  const int right = part.x + part.width, bottom = part.y + part.height;
+  glBlitFramebuffer(part.x, part.y, right, bottom, x_px + part.x, y_px + part.y, x_px + right, y_px + bottom,
+                    GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
 }  // namespace orcart

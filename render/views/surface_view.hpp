@@ -17,12 +17,12 @@ class SurfaceView {
 
   /// Draws into the kept picture. For a new eye the mesh; for the same eye only the paint, and only where the
   /// box `changed` of M (mm) is seen, and of a coarse view the next part of the fine one. Allocates nothing
-  /// of our own.
-  void draw(const Eye& eye, const PaintedAtlas& paint, const Eigen::AlignedBox3f& changed) noexcept;
+  /// of our own. The part of the picture that is new.
+  PixelBox draw(const Eye& eye, const PaintedAtlas& paint, const Eigen::AlignedBox3f& changed) noexcept;
   /// False while draw() would make the same eye's picture finer.
   bool settled() const noexcept { return refined_ == fine_indices_ || !coarse_indices_; }
-  /// Copies the kept picture to the bound draw framebuffer at a place given in pixels from its row 0.
-  void copy_to(std::uint32_t framebuffer, int x_px, int y_px) const noexcept;
+  /// Copies a part of the kept picture to a framebuffer in which the whole would begin at x_px, y_px.
+  void copy_to(std::uint32_t framebuffer, int x_px, int y_px, const PixelBox& part) const noexcept;
   std::uint32_t framebuffer() const noexcept { return drawing_->framebuffer(); }
   const SurfaceViewSettings& settings() const noexcept { return settings_; }
 
@@ -32,7 +32,6 @@ class SurfaceView {
   EyeMatrices matrices() const noexcept;
   void look(const Eye& eye) noexcept;
   void refine() noexcept;
-  void shade(const PaintedAtlas& paint, const PixelBox& part) noexcept;
 
   SurfaceViewSettings settings_;
   std::unique_ptr<ViewDrawing> drawing_;

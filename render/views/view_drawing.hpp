@@ -32,6 +32,8 @@ struct IndexRange {
 };
 struct PixelBox {
   int x = 0, y = 0, width = 0, height = 0;
+
+  bool empty() const noexcept { return width <= 0 || height <= 0; }
 };
 
 /// The thread whose GL context is current. Allocates nothing of its own once made.

@@ -106,6 +106,30 @@ TEST_F(ScreenTest, RedrawsPartsExactlyAsAWholeRedrawWould) {
   EXPECT_EQ(part.rgba, drawn_by(fresh).rgba) << "after undo";
 }
 
+TEST_F(ScreenTest, RestoresWhatOutlineAndWordsCoveredAndNothingElse) {
+  use(scenes::sphere({0, 0, 40}, 22, 30));
+  paint(250, 90, 20, {}, 1);
+  const auto expect_as_drawn_anew = [&](const char* when) {
+    const Pixels part = drawn();
+    Screen fresh = make_screen();
+    EXPECT_EQ(part.rgba, drawn_by(fresh).rgba) << when;
+  };
+  expect_as_drawn_anew("first");
+  for (int i = 0; i < 6; ++i) {
+    state_.X_MC = beside(9.0 * i - 22, 6.0 * i - 15);  // from rim to rim, over the column's edge too
+    state_.status.captures = static_cast<std::uint32_t>(i / 2);
+    state_.status.capture_acknowledged = i % 3 == 1;
+    expect_as_drawn_anew("the scope moves");
+  }
+  state_.show_live = false;
+  expect_as_drawn_anew("no live picture");
+  state_.X_MC.reset();
+  expect_as_drawn_anew("no scope");
+  state_.show_live = true;
+  paint(20, 90, 220, beside(4, 4), 2);
+  expect_as_drawn_anew("painted on");
+}
+
 TEST_F(ScreenTest, CatchesUpAfterMorePicturesThanAreRemembered) {
   use(scenes::plane(20, 60, 8));
   (void)drawn();
