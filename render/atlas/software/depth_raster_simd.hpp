@@ -23,7 +23,7 @@ struct CornerBatch {
 
 /// An edge of each triangle: a x + b y, of places from the edge's first corner, is not negative inside.
 struct EdgeBatch {
-  alignas(64) float a[kBatch], b[kBatch], x[kBatch], y[kBatch], slack[kBatch], per_a[kBatch];
+  alignas(64) float a[kBatch], b[kBatch], x[kBatch], y[kBatch], slack[kBatch];
 };
 
 class DepthRules {
@@ -147,7 +147,6 @@ class DepthRules {
         hn::Store(x[e].v, d, edges[e].x + i);
         hn::Store(y[e].v, d, edges[e].y + i);
         hn::Store(((abs(a) + abs(b)) * kSlack_texels).v, d, edges[e].slack + i);
-        hn::Store((real(1.0) / pick(abs(a) > 1e-6, a, 1e30)).v, d, edges[e].per_a + i);
       }
       const real per_area = real(1.0) / pick(abs(area) > 1e-12, area, 1e-12);
       const real dr1 = r[1] - r[0], dr2 = r[2] - r[0];
@@ -185,7 +184,6 @@ class DepthRules {
   void fill_one(const EdgeBatch* edges, std::size_t i, const Plane& plane, const Box& box) {
     const Reals d;
     const real lane = hn::Iota(d, 0.5F);
-    const bool wide = box.x1 - box.x0 >= static_cast<std::int32_t>(hn::Lanes(d));
     for (std::int32_t y = box.y0; y <= box.y1; ++y) {
       const float row = static_cast<float>(y) + 0.5F;
       float from[3];
@@ -193,8 +191,7 @@ class DepthRules {
       const float depth = plane.at_first + plane.by_y * (row - edges[0].y[i]);
       float* const out =
           job_.per_mm + static_cast<std::size_t>(y) * static_cast<std::size_t>(job_.size_texels);
-      const Span span = wide ? span_of(edges, i, from, box) : Span{box.x0, box.x1};
-      for (std::int32_t x = span.first; x <= span.last; x += static_cast<std::int32_t>(hn::Lanes(d))) {
+      for (std::int32_t x = box.x0; x <= box.x1; x += static_cast<std::int32_t>(hn::Lanes(d))) {
         const real place = lane + static_cast<float>(x);
         const auto side = [&](std::size_t e)
                               HWY_ATTR { return (place - edges[e].x[i]) * edges[e].a[i] + from[e]; };
@@ -206,23 +203,6 @@ class DepthRules {
         hn::StoreU(pick(inside, max(before, r), before).v, d, out + x);
       }
     }
-  }
-
-  struct Span {
-    std::int32_t first, last;  ///< texels of a row, both included
-  };
-  /// Where the edges let something of a row be inside, and a texel more at each end.
-  static Span span_of(const EdgeBatch* edges, std::size_t i, const float (&from)[3], const Box& box) {
-    auto left = static_cast<float>(box.x0), right = static_cast<float>(box.x1);
-    for (std::size_t e = 0; e < 3; ++e) {
-      const float at = edges[e].x[i] - from[e] * edges[e].per_a[i];
-      if (edges[e].per_a[i] > 1e-20F)
-        left = std::max(left, at - 1.5F);
-      else if (edges[e].per_a[i] < -1e-20F)
-        right = std::min(right, at + 0.5F);
-    }
-    if (left > right) return {0, -1};
-    return {static_cast<std::int32_t>(left), static_cast<std::int32_t>(right)};
   }
 
   static constexpr double kSlack_texels = 1.0 / 1024;  ///< no cracks between neighbours
