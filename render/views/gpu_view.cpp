@@ -126,9 +126,9 @@ void GpuView::draw_mesh(const MeshProgram& with, const Mesh& mesh, const IndexRa
   glEnable(GL_CULL_FACE);
   glFrontFace(GL_CW);  // the projection turns the picture over
   glCullFace(culled);
-  const std::uintptr_t offset_bytes = indices.first * sizeof(std::uint32_t);
+  const std::uintptr_t offset_bytes = indices.first * sizeof(std::uint32_t);  // GL takes it as a pointer
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(indices.count), GL_UNSIGNED_INT,
-                 reinterpret_cast<const void*>(offset_bytes));
+                 reinterpret_cast<const void*>(offset_bytes));  // NOLINT(performance-no-int-to-ptr)
   glDisable(GL_CULL_FACE);
   glBindVertexArray(0);
 }

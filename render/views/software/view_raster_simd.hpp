@@ -13,8 +13,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace orcart::HWY_NAMESPACE {
 
+class ViewRules {
+ protected:
+#include "render/shaders/view.glsl"
+};
+
 /// Vertices, as many as there are lanes at a time.
-class VertexRules {
+class VertexRules : private ViewRules {
  public:
   explicit VertexRules(const ViewJob& job) : job_(job), clip_(job.from.projection * job.from.view) {}
 
@@ -23,8 +28,6 @@ class VertexRules {
   }
 
  private:
-#include "render/shaders/view.glsl"
-
   void see(std::size_t first) {
     const Reals d;
     const VertexNumbers& from = job_.vertices;
@@ -58,16 +61,14 @@ class VertexRules {
   static real turned(const glm::mat4& m, int to, const vec3& p) {
     return p.x * m[0][to] + p.y * m[1][to] + p.z * m[2][to];
   }
-  static real row(const glm::mat4& m, int to, const vec3& p) {
-    return turned(m, to, p) + m[3][to];
-  }
+  static real row(const glm::mat4& m, int to, const vec3& p) { return turned(m, to, p) + m[3][to]; }
 
   const ViewJob& job_;
   glm::mat4 clip_;
 };
 
 /// Triangles, one after the other, a vector of pixels of a row at a time.
-class TriangleRules {
+class TriangleRules : private ViewRules {
  public:
   TriangleRules(const ViewJob& job, bool glass) : job_(job), glass_(glass) {}
 
@@ -83,8 +84,6 @@ class TriangleRules {
   }
 
  private:
-#include "render/shaders/view.glsl"
-
   struct Edge {
     float a, b, x, y, slack;  ///< a x + b y, from x y on, is not negative inside
   };
