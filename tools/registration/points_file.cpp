@@ -281,6 +281,7 @@ Result<void> write_points(const std::filesystem::path& file, const std::vector<N
   };
   if (name.ends_with(".mrk.json")) {
     std::vector<std::string> items;
+    items.reserve(points.size());
     for (const NamedPoint& p : points)
       items.push_back("{\"label\": " + json::text(p.name) +
                       ", \"position\": " + json::numbers(std::array{p.mm.x(), p.mm.y(), p.mm.z()}) + "}");

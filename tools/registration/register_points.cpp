@@ -162,7 +162,7 @@ void measure_shape(const Pairs& pairs, Registration& result) {
     covariance += (p - result.centroid_mm) * (p - result.centroid_mm).transpose() / count;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
   result.axes = solver.eigenvectors();
-  const Eigen::Vector3d along = solver.eigenvalues();
+  const Eigen::Vector3d& along = solver.eigenvalues();
   for (Eigen::Index k = 0; k < 3; ++k) result.spread2_mm2[k] = along.sum() - along[k];
   const double length = std::sqrt(along[2]), width = std::sqrt(along[1]),
                depth = std::sqrt(std::max(0.0, along[0]));
