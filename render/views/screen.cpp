@@ -66,10 +66,8 @@ struct Screen::State {
     bool operator==(const Told&) const = default;
   };
   std::optional<Told> told;
-  // What of `framebuffer` is not as view and status pictures are: part of the view (its own pixels), the
-  // rest.
-  PixelBox stale_view;
-  bool stale_status = true;
+  PixelBox stale_view;       ///< of `framebuffer`: what is not as the view's picture is, in the view's pixels
+  bool stale_status = true;  ///< of `framebuffer`: column and bar are not as told
   gles::DmaBufFramebuffers shared{4};             ///< targets in dma-bufs, drawn into without a copy
   std::optional<ProcessorInset> processor_inset;  ///< where the processor draws
   gles::Program inset;
@@ -84,7 +82,7 @@ struct Screen::State {
   Result<void> make_inset();
   Result<void> make_gpu_inset();
   void warm_up();
-  void redraw(const ScreenState& state, const Painter& painter) noexcept;
+  void redraw(const ScreenState& state, const Painter& painter, const PaintedAtlas& paint) noexcept;
   PixelBox whole_view() const noexcept {
     return {0, 0, view[0].settings().width_px, view[0].settings().height_px};
   }
@@ -254,7 +252,8 @@ void Screen::State::cover(const HudBox& box) noexcept {
   stale_status = stale_status || right > whole.width || bottom > whole.height;
 }
 
-void Screen::State::redraw(const ScreenState& state, const Painter& painter) noexcept {
+void Screen::State::redraw(const ScreenState& state, const Painter& painter,
+                           const PaintedAtlas& paint) noexcept {
   if (drawn && drawn_version == state.paint_version && drawn_eye == state.eye && view[0].settled()) return;
   constexpr std::uint64_t kRemembered = 16;
   Eigen::AlignedBox3f changed;
@@ -263,7 +262,7 @@ void Screen::State::redraw(const ScreenState& state, const Painter& painter) noe
        ++i) {
     changed.extend(painter.touched_by(i));
   }
-  stale_view = united(stale_view, view[0].draw(state.eye, painter.painted(settings.draw_by), changed));
+  stale_view = united(stale_view, view[0].draw(state.eye, paint, changed));
   drawn = true;
   drawn_version = state.paint_version;
   drawn_changes = now;
@@ -272,9 +271,9 @@ void Screen::State::redraw(const ScreenState& state, const Painter& painter) noe
 
 bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageDescriptor& target) noexcept {
   State& s = *state_;
-  if (s.settings.draw_by == PaintBy::processor && painter.painted(PaintBy::processor).colours == nullptr)
-    return false;
-  s.redraw(state, painter);
+  const PaintedAtlas paint = painter.painted(s.settings.draw_by);
+  if (s.settings.draw_by == PaintBy::processor && paint.colours == nullptr) return false;
+  s.redraw(state, painter, paint);
   const bool copies = target.planes[0].data != nullptr;
   const GLuint into = copies ? s.framebuffer.id() : s.shared_target(target);
   if (into == 0) return false;

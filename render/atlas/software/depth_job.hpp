@@ -11,7 +11,6 @@ struct DepthJob {
   std::array<float, 3> t_CM{};  ///< mm
   float tangent = 1, near_mm = 0.3F;
   int size_texels = 0;
-  int first_row = 0, end_row = 0;           ///< only these are drawn
   const float* vertices_mm = nullptr;       ///< x y z, M
   const std::int32_t* triangles = nullptr;  ///< three vertex numbers each
   float* per_mm = nullptr;  ///< size_texels squared, a vector's length readable and writable beyond

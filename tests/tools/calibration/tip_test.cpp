@@ -109,17 +109,27 @@ TEST(Tip, ItsCovarianceHoldsTheTruthAsOftenAsItSays) {
   }
 }
 
-TEST(Tip, NotesALensOfWhichNobodySaysHowWellItIsKnown) {
+/// Four views of a board whose distances were measured from a window 2 mm before the optical centre.
+struct FourViews {
+  FourViews() {
+    scope.width_px = 640, scope.height_px = 480;
+    scope.lens = testing::test_lens(LensModel::brown);
+    std::vector<Pose<C, B>> poses;
+    boards = testing::simulated_views(
+        scope.lens, {.views = 4, .noise_px = 0.1, .tilt_rad = 0.1, .nearest_mm = 20, .farthest_mm = 40},
+        &poses);
+    for (const auto& X_CB : poses) distances_mm.push_back(*axis_distance_mm(X_CB) - 2);
+  }
+  auto calibrated() const { return calibrate_tip(boards, distances_mm, scope); }
+
   ScopeModel scope;
-  scope.width_px = 640, scope.height_px = 480;
-  scope.lens = testing::test_lens(LensModel::brown);
-  std::vector<Pose<C, B>> poses;
-  const auto boards = testing::simulated_views(
-      scope.lens, {.views = 4, .noise_px = 0.1, .tilt_rad = 0.1, .nearest_mm = 20, .farthest_mm = 40},
-      &poses);
+  std::vector<BoardView> boards;
   std::vector<double> distances_mm;
-  for (const auto& X_CB : poses) distances_mm.push_back(*axis_distance_mm(X_CB) - 2);
-  const auto told = calibrate_tip(boards, distances_mm, scope);
+};
+
+TEST(Tip, NotesALensOfWhichNobodySaysHowWellItIsKnown) {
+  const FourViews views;
+  const auto told = views.calibrated();
   ASSERT_TRUE(told) << told.error().message;
   EXPECT_NEAR(told->scope.X_CE.translation_mm.z(), 2, 0.1);
   ASSERT_FALSE(told->fit.notes.empty());
@@ -128,22 +138,14 @@ TEST(Tip, NotesALensOfWhichNobodySaysHowWellItIsKnown) {
 }
 
 TEST(Tip, IsOnTheAxisByItsDefinitionAndSaysHowFarTheCirclesMiddleLiesBeside) {
-  ScopeModel scope;
-  scope.width_px = 640, scope.height_px = 480;
-  scope.lens = testing::test_lens(LensModel::brown);
-  std::vector<Pose<C, B>> poses;
-  const auto boards = testing::simulated_views(
-      scope.lens, {.views = 4, .noise_px = 0.1, .tilt_rad = 0.1, .nearest_mm = 20, .farthest_mm = 40},
-      &poses);
-  std::vector<double> distances_mm;
-  for (const auto& X_CB : poses) distances_mm.push_back(*axis_distance_mm(X_CB) - 2);
-  const auto without = calibrate_tip(boards, distances_mm, scope);
+  FourViews views;
+  const auto without = views.calibrated();
   ASSERT_TRUE(without) << without.error().message;
   EXPECT_FALSE(without->middle_mm) << "the passport has no circle";
   // A circle whose middle is seen atan(0.1) off the axis.
-  const Eigen::Vector2d middle = project(scope.lens, {0.06, -0.08, 1}).value();
-  scope.mask = {.cx_px = middle.x(), .cy_px = middle.y(), .radius_px = 200};
-  const auto told = calibrate_tip(boards, distances_mm, scope);
+  const Eigen::Vector2d middle = project(views.scope.lens, {0.06, -0.08, 1}).value();
+  views.scope.mask = {.cx_px = middle.x(), .cy_px = middle.y(), .radius_px = 200};
+  const auto told = views.calibrated();
   ASSERT_TRUE(told) << told.error().message;
   EXPECT_NEAR(told->middle_mm.value(), 0.1 * told->scope.X_CE.translation_mm.z(), 1e-6);
   EXPECT_TRUE(told->scope.X_CE.translation_mm.head<2>().isZero(0));

@@ -113,10 +113,12 @@ TEST(RealLinks, CarryTheDriverOverTcp) {
 /// return.
 class PlainClient {
  public:
-  explicit PlainClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  explicit PlainClient(const ServedTracker& served)
+      : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    const int port = std::stoi(served.name.substr(served.name.find(':') + 1));
     sockaddr_in address{};
     address.sin_family = AF_INET;
-    address.sin_port = htons(port);
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     const timeval second{.tv_sec = 1, .tv_usec = 0};
     ::setsockopt(socket_.get(), SOL_SOCKET, SO_RCVTIMEO, &second, sizeof second);
@@ -142,25 +144,23 @@ class PlainClient {
 
 TEST(RealLinks, TheNextClientInheritsNothing) {
   const ServedTracker served(open_tcp_port({.port = 0}).value());
-  const auto port = static_cast<std::uint16_t>(std::stoi(served.name.substr(served.name.find(':') + 1)));
   {
-    PlainClient first(port);
+    PlainClient first(served);
     first.say("INIT \r");
     EXPECT_EQ(first.answer().substr(0, 4), "OKAY");
     first.say("VER 4");  // and hangs up in the middle of a word
   }
-  PlainClient second(port);
+  PlainClient second(served);
   second.say("INIT \r");
   EXPECT_EQ(second.answer().substr(0, 4), "OKAY");
 }
 
 TEST(RealLinks, ASecondClientIsPutOutAtOnceAndTheFirstGoesOn) {
   const ServedTracker served(open_tcp_port({.port = 0}).value());
-  const auto port = static_cast<std::uint16_t>(std::stoi(served.name.substr(served.name.find(':') + 1)));
-  PlainClient first(port);
+  PlainClient first(served);
   first.say("INIT \r");
   EXPECT_EQ(first.answer().substr(0, 4), "OKAY");
-  PlainClient second(port);
+  PlainClient second(served);
   EXPECT_TRUE(second.connected);
   EXPECT_EQ(second.answer(), "gone");
   first.say("INIT \r");
