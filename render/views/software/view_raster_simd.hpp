@@ -246,11 +246,11 @@ class TriangleRules : private ViewRules {
     };
     SeenVertex kept[4];
     std::size_t count = 0;
-    const auto keep = [&](const glm::vec4& clip, SeenVertex seen) {
+    const auto keep = [&](const glm::vec4& clip, const SeenVertex& from) {
+      SeenVertex& seen = kept[count++] = from;
       seen.nearness = 1 / clip.w;
       seen.x_px = (clip.x / clip.w * 0.5F + 0.5F) * static_cast<float>(job_.places.width);
       seen.y_px = (clip.y / clip.w * 0.5F + 0.5F) * static_cast<float>(job_.places.height);
-      kept[count++] = seen;
     };
     for (std::size_t i = 0; i < 3; ++i) {
       const Corner from = corner(i), to = corner(i + 1);
