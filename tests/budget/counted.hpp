@@ -1,4 +1,4 @@
-// One step for callgrind to count: a dump of its own, named by the step and its size. For the one file of a program.
+// One step for callgrind to count: a dump of its own, named by the step and its size. One file a program.
 #pragma once
 
 #include <list>
