@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include <CLI/CLI.hpp>
+#include "firmware-host/app/command_line.hpp"
 
 namespace orcart {
 
@@ -29,28 +29,28 @@ tl::expected<Options, int> read_options(int argc, char** argv) {
   app.footer("Example:\n  orcartd --cart share/carts/demo.toml --panel png --report out/demo --for 30s");
   Options options;
   std::string run_for;
+  app.failure_message(in_a_sentence);
   app.set_version_flag("--version", ORCART_VERSION);
   app.add_option("--cart", options.cart, "the cart's configuration")->required();
   app.add_option("--panel", options.panel,
                  "png: pictures beside the report; window: a preview on this screen; kms: the [panel] of the "
                  "cart, no desktop "
                  "running; none")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, PanelKind>{{"png", PanelKind::png},
-                                                                           {"window", PanelKind::window},
-                                                                           {"kms", PanelKind::kms},
-                                                                           {"none", PanelKind::none}}));
+      ->transform(one_of<PanelKind>({{"png", PanelKind::png},
+                                     {"window", PanelKind::window},
+                                     {"kms", PanelKind::kms},
+                                     {"none", PanelKind::none}}));
   app.add_option("--clock", options.clock,
                  "real: the wall clock; simulated: as fast as it can, the same every time")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, ClockKind>{{"real", ClockKind::real}, {"simulated", ClockKind::simulated}}));
+      ->transform(one_of<ClockKind>({{"real", ClockKind::real}, {"simulated", ClockKind::simulated}}));
   app.add_option("--for", run_for,
                  "how long, e.g. 30s; without it until stopped or the simulated procedure ends");
   app.add_option_function<Medium>(
          "--medium", [&options](const Medium& medium) { options.medium = medium; },
          "what the scope is used in: air, water or saline; painting is blocked where the passport says "
          "another")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Medium>{
-          {"air", Medium::air}, {"water", Medium::water}, {"saline", Medium::saline}}));
+      ->transform(
+          one_of<Medium>({{"air", Medium::air}, {"water", Medium::water}, {"saline", Medium::saline}}));
   app.add_option_function<double>(
          "--turn", [&options](const double& deg) { options.turn_rad = deg * std::numbers::pi / 180; },
          "degrees by which the picture has turned since the passport was made (orcart turn tells it by the "
@@ -65,7 +65,7 @@ tl::expected<Options, int> read_options(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return tl::unexpected(app.exit(error) == 0 ? 0 : 2);
+    return tl::unexpected(exit_code_of(app, error));
   }
   if (!run_for.empty()) {
     auto length = duration_from(run_for);

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   CLI::App app{
       "orcart: paint what an endoscope sees onto the surface from the patient's CT or MR.\n"
       "Research use only; not a medical device."};
+  app.failure_message(orcart::in_a_sentence);
   app.require_subcommand(1);
   app.set_version_flag("--version", ORCART_VERSION);
   int exit_code = 0;
@@ -42,6 +43,10 @@ int main(int argc, char** argv) {
   orcart::add_surface(app, exit_code);
   orcart::add_turn(app, exit_code);
   if (argc > 1 && is_unknown_verb(app, argv[1])) return 2;
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return orcart::exit_code_of(app, error);
+  }
   return exit_code;
 }

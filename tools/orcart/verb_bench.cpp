@@ -1,6 +1,5 @@
 // orcart bench: how long the mapper takes for a file of poses.
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <string>
 
@@ -68,7 +67,7 @@ void add_bench(CLI::App& app, int& exit_code) {
   auto* mapper = bench->add_subcommand("mapper", "Time the mapper's view, pose by pose");
   mapper->footer(kExample);
   const auto arguments = std::make_shared<Arguments>();
-  mapper->add_option("--surface", arguments->surface, "PLY, STL or OBJ; LPS mm where it states no space")
+  mapper->add_option("--surface", arguments->surface, "PLY, STL, OBJ or mz3; LPS mm where it states no space")
       ->required();
   mapper->add_option("--poses", arguments->poses, "bench poses, CSV")->required();
   mapper->add_option("--cone", arguments->cone.half_angle_deg, "half angle of the viewing cone, degrees")
@@ -79,22 +78,20 @@ void add_bench(CLI::App& app, int& exit_code) {
       ->check(CLI::PositiveNumber);
   BenchSettings& settings = arguments->settings;
   mapper->add_option("--form", settings.form, "cutout (default), clip, ranges or live")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, BenchForm>{{"cutout", BenchForm::cutout},
-                                                                           {"clip", BenchForm::clip},
-                                                                           {"ranges", BenchForm::ranges},
-                                                                           {"live", BenchForm::live}}));
+      ->transform(one_of<BenchForm>({{"cutout", BenchForm::cutout},
+                                     {"clip", BenchForm::clip},
+                                     {"ranges", BenchForm::ranges},
+                                     {"live", BenchForm::live}}));
   mapper
       ->add_option("--rule", settings.rule,
                    "of cutout and clip: touching (default, every triangle that meets the cone) or corner "
                    "(those with a corner in it)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, CutoutRule>{
-          {"touching", CutoutRule::touching}, {"corner", CutoutRule::corner}}));
+      ->transform(one_of<CutoutRule>({{"touching", CutoutRule::touching}, {"corner", CutoutRule::corner}}));
   mapper->add_option("--seen-from", settings.seen_from, "of live: outside (default) or inside")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, SeenFrom>{{"outside", SeenFrom::outside}, {"inside", SeenFrom::inside}}));
+      ->transform(one_of<SeenFrom>({{"outside", SeenFrom::outside}, {"inside", SeenFrom::inside}}));
   mapper->add_option("--mode", settings.mode, "of live: perspective (default) or paper")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, TextureMode>{
-          {"perspective", TextureMode::perspective}, {"paper", TextureMode::paper}}));
+      ->transform(
+          one_of<TextureMode>({{"perspective", TextureMode::perspective}, {"paper", TextureMode::paper}}));
   mapper->add_option("--rounds", settings.rounds, "how often all poses are run")
       ->capture_default_str()
       ->check(CLI::Range(1, 1'000'000));

@@ -1,6 +1,5 @@
 // orcart bench paint: how long painting and the panel's picture take for a file of poses.
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -72,7 +71,7 @@ void add_bench_paint(CLI::App& bench_verb, int& exit_code) {
   auto* paint = bench_verb.add_subcommand("paint", "Time painting and the panel's picture, pose by pose");
   paint->footer(kExample);
   const auto arguments = std::make_shared<Arguments>();
-  paint->add_option("--surface", arguments->surface, "PLY, STL or OBJ; LPS mm where it states no space")
+  paint->add_option("--surface", arguments->surface, "PLY, STL, OBJ or mz3; LPS mm where it states no space")
       ->required();
   paint->add_option("--poses", arguments->poses, "bench poses, CSV")->required();
   paint->add_option("--every", arguments->every, "take only every n-th pose")
@@ -88,19 +87,15 @@ void add_bench_paint(CLI::App& bench_verb, int& exit_code) {
       ->capture_default_str()
       ->check(CLI::Range(0.01, 10.0));
   paint->add_option("--seen-from", arguments->settings.seen_from, "outside (default) or inside")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, SeenFrom>{{"outside", SeenFrom::outside}, {"inside", SeenFrom::inside}}));
+      ->transform(one_of<SeenFrom>({{"outside", SeenFrom::outside}, {"inside", SeenFrom::inside}}));
   paint->add_option("--policy", arguments->settings.policy, "newest (default) or best")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, PaintPolicy>{{"newest", PaintPolicy::newest}, {"best", PaintPolicy::best}}));
+      ->transform(one_of<PaintPolicy>({{"newest", PaintPolicy::newest}, {"best", PaintPolicy::best}}));
   paint->add_option("--from", arguments->settings.from, "lists (default): the cart's; ranges: whole clusters")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, PaintFrom>{{"lists", PaintFrom::lists}, {"ranges", PaintFrom::ranges}}));
+      ->transform(one_of<PaintFrom>({{"lists", PaintFrom::lists}, {"ranges", PaintFrom::ranges}}));
   paint
       ->add_option("--by", arguments->settings.by,
                    "gpu or processor; unless told otherwise whoever suits the driver")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, PaintBy>{{"gpu", PaintBy::gpu}, {"processor", PaintBy::processor}}));
+      ->transform(one_of<PaintBy>({{"gpu", PaintBy::gpu}, {"processor", PaintBy::processor}}));
   paint->add_flag("--json", arguments->json, "one JSON object");
   paint->callback([arguments, &exit_code] {
     arguments->settings.cone_half_angle_rad = arguments->cone_deg * std::numbers::pi / 180;

@@ -1,6 +1,10 @@
 // orcart calibrate and orcart rectify: a scope's lens from pictures of a board.
+#include <unistd.h>
+
 #include <cstdio>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "tools/orcart/verbs.hpp"
 
@@ -36,7 +40,7 @@ int failed(const char* verb, const Error& error) {
 }
 
 Progress told_on_stderr(bool quiet) {
-  if (quiet) return {};
+  if (quiet || ::isatty(STDERR_FILENO) != 1) return {};
   return [](std::size_t done, std::size_t all, const std::string& what) {
     std::fprintf(stderr, "\r\033[K  %zu/%zu %s%s", done, all, what.c_str(), done == all ? "\r\033[K" : "");
   };
@@ -70,15 +74,15 @@ void add_camera(CLI::App& calibrate_verb, int& exit_code) {
   verb->add_option("--pattern", arguments->pattern,
                    "chessboard:14x10:3mm | charuco:19x26:5mm:4mm:4X4_250[:legacy] | dots:16x14:4mm")
       ->required();
-  static const std::map<std::string, LensModel> models{
+  static const std::vector<std::pair<std::string, LensModel>> models{
       {"brown", LensModel::brown}, {"poly4", LensModel::poly4}, {"fisheye", LensModel::fisheye}};
   verb->add_option("--model", command.model, "brown (the default), poly4 or fisheye")
-      ->transform(CLI::CheckedTransformer(models));
-  static const std::map<std::string, Medium> media{
+      ->transform(one_of(models));
+  static const std::vector<std::pair<std::string, Medium>> media{
       {"air", Medium::air}, {"water", Medium::water}, {"saline", Medium::saline}};
   verb->add_option("--medium", command.medium,
                    "what the pictures were taken in: air (the default), water or saline")
-      ->transform(CLI::CheckedTransformer(media));
+      ->transform(one_of(media));
   verb->add_option("--name", command.name, "the scope's name in its passport")->capture_default_str();
   verb->add_option("--serial", command.serial, "the scope's serial number, which the cart compares");
   verb->add_option("--distances", command.distances_mm,

@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <map>
 #include <memory>
 
 #include "tools/evaluate/recorded/board_mapping.hpp"
@@ -75,8 +74,8 @@ void add_evaluate_board(CLI::App& evaluate, int& exit_code) {
   verb->add_option("--scope", command.scope,
                    "the passport; the camera is calibrated from the pictures unless told");
   verb->add_option("--mode", command.mode, "perspective (default), or paper")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, TextureMode>{
-          {"perspective", TextureMode::perspective}, {"paper", TextureMode::paper}}));
+      ->transform(
+          one_of<TextureMode>({{"perspective", TextureMode::perspective}, {"paper", TextureMode::paper}}));
   verb->add_option("--marker-noise", command.hand_eye.noise.marker_mm, "of one marker in 3-D, mm RMS")
       ->check(CLI::Range(0.001, 5.0))
       ->capture_default_str();
@@ -90,8 +89,7 @@ void add_evaluate_board(CLI::App& evaluate, int& exit_code) {
       ->capture_default_str();
   verb->add_option("--poses-in", command.hand_eye.noise.poses_in,
                    "tracker (the default), or reference: a marker body beside the board")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, PosesIn>{{"tracker", PosesIn::tracker}, {"reference", PosesIn::reference}}));
+      ->transform(one_of<PosesIn>({{"tracker", PosesIn::tracker}, {"reference", PosesIn::reference}}));
   verb->add_option("--texel-mm", command.texel_mm, "size of the paint's texels")
       ->check(CLI::Range(0.02, 1.0))
       ->capture_default_str();

@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "firmware-host/files/scope_file.hpp"
 #include "firmware-host/files/whole_file.hpp"
@@ -148,11 +149,11 @@ void add_hand_eye(CLI::App& calibrate, int& exit_code) {
                    "marker noise along the sensor's z against x and y")
       ->check(CLI::Range(1.0, 20.0))
       ->capture_default_str();
-  static const std::map<std::string, PosesIn> frames{{"tracker", PosesIn::tracker},
-                                                     {"reference", PosesIn::reference}};
+  static const std::vector<std::pair<std::string, PosesIn>> frames{{"tracker", PosesIn::tracker},
+                                                                   {"reference", PosesIn::reference}};
   verb->add_option("--poses-in", arguments->command.noise.poses_in,
                    "tracker (the default), or reference: a marker body beside the board")
-      ->transform(CLI::CheckedTransformer(frames));
+      ->transform(one_of(frames));
   verb->add_option("--page", arguments->page, "also one HTML page with residuals in each picture");
   verb->add_flag("--json", arguments->json, "the figures as JSON");
   verb->callback([arguments, &exit_code] {

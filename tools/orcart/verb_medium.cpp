@@ -1,8 +1,9 @@
 // orcart calibrate medium: a passport made in air, for use in fluid.
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "firmware-host/files/scope_file.hpp"
 #include "firmware-host/files/whole_file.hpp"
@@ -75,12 +76,10 @@ void add_medium(CLI::App& calibrate, int& exit_code) {
   CLI::App* verb = calibrate.add_subcommand("medium", "A passport made in air, for use in fluid");
   verb->footer(kExample);
   const auto arguments = std::make_shared<Arguments>();
-  static const std::map<std::string, Medium> media{
+  static const std::vector<std::pair<std::string, Medium>> media{
       {"air", Medium::air}, {"water", Medium::water}, {"saline", Medium::saline}};
   verb->add_option("--scope", arguments->scope, "the passport, made in air")->required();
-  verb->add_option("--medium", arguments->medium, "water or saline")
-      ->transform(CLI::CheckedTransformer(media))
-      ->required();
+  verb->add_option("--medium", arguments->medium, "water or saline")->transform(one_of(media))->required();
   verb->add_option("--window-mm", arguments->window_mm, "from the optical centre to the window's outside, mm")
       ->check(CLI::Range(0.01, 50.0));
   const CLI::Option* doubt =

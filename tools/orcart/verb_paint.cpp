@@ -5,7 +5,6 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -162,7 +161,6 @@ Result<std::size_t> paint_views(OfflinePainter& painter, const Inputs& inputs, c
   return without_paint;
 }
 
-/// Texels, row 0 on top, to places with their origin bottom left.
 double median_of(std::vector<std::uint16_t> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -297,28 +295,24 @@ std::string writable_kind(const std::string& out) {
 void add_painting_options(CLI::App& verb, Arguments& arguments) {
   verb.add_option("--policy", arguments.options.policy,
                   "newest (default): the newest picture wins; best: the one in which a pixel covers least")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, PaintPolicy>{{"newest", PaintPolicy::newest}, {"best", PaintPolicy::best}}));
+      ->transform(one_of<PaintPolicy>({{"newest", PaintPolicy::newest}, {"best", PaintPolicy::best}}));
   verb.add_option("--highlights", arguments.options.highlights,
                   "keep (default), or yield: mirrored light gives way to any other picture")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Highlights>{{"keep", Highlights::keep}, {"yield", Highlights::yield}}));
+      ->transform(one_of<Highlights>({{"keep", Highlights::keep}, {"yield", Highlights::yield}}));
   verb.add_option(
           "--light", arguments.options.light,
           "as_seen (default); the light's fall evened out: fixed_exposure, or auto_exposure where the "
           "camera sets its gain")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, LightModel>{{"as_seen", LightModel::as_seen},
-                                            {"fixed_exposure", LightModel::fixed_exposure},
-                                            {"auto_exposure", LightModel::auto_exposure}}));
+      ->transform(one_of<LightModel>({{"as_seen", LightModel::as_seen},
+                                      {"fixed_exposure", LightModel::fixed_exposure},
+                                      {"auto_exposure", LightModel::auto_exposure}}));
   verb.add_option("--colour-by", arguments.colour_by,
                   "picture (default), or what is known of each texel: capture, angle, resolution, error")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, ColourBy>{{"picture", ColourBy::picture},
-                                                                  {"capture", ColourBy::capture},
-                                                                  {"angle", ColourBy::angle},
-                                                                  {"resolution", ColourBy::resolution},
-                                                                  {"error", ColourBy::error}}));
+      ->transform(one_of<ColourBy>({{"picture", ColourBy::picture},
+                                    {"capture", ColourBy::capture},
+                                    {"angle", ColourBy::angle},
+                                    {"resolution", ColourBy::resolution},
+                                    {"error", ColourBy::error}}));
 }
 
 }  // namespace
@@ -327,19 +321,18 @@ void add_paint(CLI::App& app, int& exit_code) {
   CLI::App* verb = app.add_subcommand("paint", "Paint recorded pictures with known poses onto a surface");
   verb->footer(kExample);
   const auto arguments = std::make_shared<Arguments>();
-  verb->add_option("--surface", arguments->surface, "PLY, STL or OBJ, mm")->required();
+  verb->add_option("--surface", arguments->surface, "PLY, STL, OBJ or mz3, mm")->required();
   verb->add_option("--scope", arguments->scope, "scope.toml, the calibration passport")->required();
   verb->add_option("--turn", arguments->turn_deg,
                    "degrees by which the pictures had turned since the passport was made");
   verb->add_option("--views", arguments->views, "views.csv")->required();
   verb->add_option("--mode", arguments->options.mode,
                    "perspective (default): through the calibrated lens; paper: as Dey et al. 2000")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, TextureMode>{
-          {"perspective", TextureMode::perspective}, {"paper", TextureMode::paper}}));
+      ->transform(
+          one_of<TextureMode>({{"perspective", TextureMode::perspective}, {"paper", TextureMode::paper}}));
   add_painting_options(*verb, *arguments);
   verb->add_option("--seen-from", arguments->options.seen_from, "outside (default) or inside")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, SeenFrom>{{"outside", SeenFrom::outside}, {"inside", SeenFrom::inside}}));
+      ->transform(one_of<SeenFrom>({{"outside", SeenFrom::outside}, {"inside", SeenFrom::inside}}));
   verb->add_option("--texel-mm", arguments->options.texel_mm,
                    "size of the paint's texels; made coarser where the surface would not fit")
       ->check(CLI::Range(0.01, 10.0))
@@ -347,8 +340,7 @@ void add_paint(CLI::App& app, int& exit_code) {
   verb->add_option_function<Space>(
           "--space", [arguments](const Space& space) { arguments->space = space; },
           "lps or ras: the space of a surface that states none")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Space>{{"lps", Space::lps}, {"ras", Space::ras}}, CLI::ignore_case));
+      ->transform(one_of<Space>({{"lps", Space::lps}, {"ras", Space::ras}}));
   verb->add_option("--out", arguments->out, "NAME.obj, NAME.ply or NAME.glb")
       ->required()
       ->check(CLI::Validator(writable_kind, "NAME.obj|NAME.ply|NAME.glb"));

@@ -2,8 +2,9 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <map>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "firmware-host/files/picture_file.hpp"
 #include "firmware-host/files/scope_file.hpp"
@@ -240,17 +241,17 @@ void add_register(CLI::App& app, int& exit_code) {
   verb->add_option("moving", arguments->moving,
                    "the same, measured: points.csv, .fcsv or .mrk.json, or a recording .igs.mha")
       ->required();
-  static const std::map<std::string, Space> spaces{{"LPS", Space::lps}, {"RAS", Space::ras}};
+  static const std::vector<std::pair<std::string, Space>> spaces{{"LPS", Space::lps}, {"RAS", Space::ras}};
   verb->add_option_function<Space>(
           "--space", [arguments](const Space& space) { arguments->space = space; },
           "axes of FIXED where the file does not state them: LPS or RAS")
-      ->transform(CLI::CheckedTransformer(spaces));
-  static const std::map<std::string, Pairing> pairings{
+      ->transform(one_of(spaces));
+  static const std::vector<std::pair<std::string, Pairing>> pairings{
       {"names", Pairing::by_name}, {"given", Pairing::by_order}, {"unknown", Pairing::unknown}};
   verb->add_option_function<Pairing>(
           "--order", [arguments](const Pairing& pairing) { arguments->task.pairing = pairing; },
           "names, given or unknown; by names where they agree, else as given")
-      ->transform(CLI::CheckedTransformer(pairings));
+      ->transform(one_of(pairings));
   verb->add_option("--fle", arguments->task.fle_mm,
                    "fiducial localisation error, mm RMS, declared or pooled over patients")
       ->check(CLI::Range(0.01, 20.0))

@@ -1,4 +1,6 @@
 // orcart calibrate time: the tracker's lag against the video, from a recording of movements.
+#include <unistd.h>
+
 #include <cstdio>
 #include <memory>
 
@@ -40,7 +42,8 @@ Result<void> run(Arguments& arguments) {
     if (done % 10 == 0 || done == all)
       std::fprintf(stderr, "\r\033[K  %zu/%zu %s%s", done, all, what.c_str(), done == all ? "\r\033[K" : "");
   };
-  const auto calibration = calibrate_time(arguments.command, arguments.json ? Progress{} : told);
+  const auto calibration =
+      calibrate_time(arguments.command, arguments.json || ::isatty(STDERR_FILENO) != 1 ? Progress{} : told);
   if (!calibration) return tl::unexpected(calibration.error());
   if (!arguments.page.empty())
     if (auto written = write_whole_file(arguments.page, time_page(*calibration)); !written) return written;

@@ -1,6 +1,5 @@
 // orcart calibrate turn and orcart turn: scopes whose light post turns against the camera head.
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <numbers>
 
@@ -72,6 +71,8 @@ Result<void> tell(const TurnArguments& arguments) {
   std::string text;
   for (const auto& image : arguments.images) {
     const cv::Mat picture = load_picture(image);
+    if (picture.empty())
+      return fail(image.string() + ": cannot be read as a picture; PNG, JPEG, TIFF and BMP are accepted");
     if (picture.cols != scope->width_px || picture.rows != scope->height_px)
       return fail(image.string() + json::format(": %dx%d px; a picture of the scope's %dx%d is accepted",
                                                 picture.cols, picture.rows, scope->width_px,
@@ -104,8 +105,7 @@ void add_turning(CLI::App& calibrate_verb, int& exit_code) {
   verb->add_option(
           "--marker", arguments->command.marker,
           "with --second-poses, where the scope's own marker (--poses) sits: head (default) or shaft")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, TurnMarker>{{"head", TurnMarker::head}, {"shaft", TurnMarker::shaft}}));
+      ->transform(one_of<TurnMarker>({{"head", TurnMarker::head}, {"shaft", TurnMarker::shaft}}));
   verb->add_option("--angle", arguments->angle_deg, "degrees between view and shaft, as engraved")
       ->check(CLI::Range(0.0, 120.0))
       ->required();

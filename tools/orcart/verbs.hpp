@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "firmware-host/app/command_line.hpp"
+
 namespace orcart {
 
 /// Each verb sets `exit_code` in its callback: 0 only on success. Errors are one sentence on stderr.
