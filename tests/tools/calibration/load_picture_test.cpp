@@ -46,7 +46,9 @@ TEST(LoadPicture, WhatIsNoPictureIsEmpty) {
   const TemporaryFolder folder;
   EXPECT_TRUE(load_picture(folder.write("a.png", "no picture")).empty());
   EXPECT_TRUE(load_picture(folder.write("b.png", "")).empty());
+  ::testing::internal::CaptureStderr();
   EXPECT_TRUE(load_picture(folder / "gone.png").empty());
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "whoever asked says it";
   // A PNG header that asks for more pixels than OpenCV takes.
   EXPECT_TRUE(
       load_picture(
