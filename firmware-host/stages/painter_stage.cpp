@@ -57,7 +57,8 @@ void PainterStage::handle(const PaintOrder& order, Instant now) noexcept {
       break;
     case PaintOrderKind::cancel:
       state_.acknowledge_pending = false;
-      if (unit_count_ > 0 && units_[unit_count_ - 1] == order.request.unit) take_back(now);
+      cancelled_unit_ = order.request.unit;
+      if (unit_count_ > 0 && units_[unit_count_ - 1].number == order.request.unit) take_back(now);
       break;
     case PaintOrderKind::undo:
       take_back(now);
@@ -84,11 +85,17 @@ void PainterStage::show(const CapturedFrame& frame) noexcept {
   holds_[frame.buffer] = 2;
 }
 
-// Of a view in parts, the painter paints with the last one.
+// Of a view in parts, the painter paints with the last one. What was taken back while the mapper still had it
+// comes after the order that took it back.
 void PainterStage::paint(const PaintOrder& order, Instant now) noexcept {
+  const bool last = patches_[order.patch].last_part;
+  if (order.request.unit == cancelled_unit_ || order.request.unit == undone_unit_) {
+    (void)lanes_.patches_home.try_push(order.patch);
+    if (last) done_with(order.frame.buffer);
+    return;
+  }
   painter_.upload(order.frame.image);
   upload_due_ = have_newest_;  // the inset goes back to the newest picture
-  const bool last = patches_[order.patch].last_part;
   painter_.set_turn(order.turn_rad);
   if (last && errors_ != nullptr) painter_.set_view_error(errors_->at(order.X_MC));
   const PaintReport report = painter_.paint(patches_[order.patch], order.request.unit);
@@ -96,26 +103,29 @@ void PainterStage::paint(const PaintOrder& order, Instant now) noexcept {
   if (!last) return;
   is_carried_ = report.carried;
   carried_ = order;
-  if (!report.carried) painted(order, now);
+  if (!report.carried) painted(order, report.painted, now);
 }
 
 void PainterStage::go_on(Instant now) noexcept {
   painter_.upload(carried_.frame.image);
   upload_due_ = have_newest_;
   is_carried_ = painter_.paint_more().carried;
-  if (!is_carried_) painted(carried_, now);
+  if (!is_carried_) painted(carried_, true, now);
 }
 
-void PainterStage::painted(const PaintOrder& order, Instant now) noexcept {
-  const bool new_unit = unit_count_ == 0 || units_[unit_count_ - 1] != order.request.unit;
+// A picture that shows no surface, as of a calibration board, is a capture all the same.
+void PainterStage::painted(const PaintOrder& order, bool on_surface, Instant now) noexcept {
+  const bool new_unit = unit_count_ == 0 || units_[unit_count_ - 1].number != order.request.unit;
   if (new_unit) {
     if (unit_count_ == units_.size()) {
       for (std::size_t i = 1; i < units_.size(); ++i) units_[i - 1] = units_[i];
       --unit_count_;
     }
-    units_[unit_count_++] = order.request.unit;
+    units_[unit_count_++] = {.number = order.request.unit};
     ++state_.captures;
   }
+  Unit& unit = units_[unit_count_ - 1];
+  unit.on_surface = unit.on_surface || on_surface;
   ++state_.version;
   state_.acknowledge_pending = false;
   state_.last_refusal = Refusal::none;
@@ -147,8 +157,9 @@ void PainterStage::fail(const PaintOrder& order, Instant now) noexcept {
 }
 
 void PainterStage::take_back(Instant now) noexcept {
-  if (unit_count_ == 0 || !painter_.undo()) return;
-  const std::uint32_t unit = units_[--unit_count_];
+  if (unit_count_ == 0 || (units_[unit_count_ - 1].on_surface && !painter_.undo())) return;
+  const std::uint32_t unit = units_[--unit_count_].number;
+  undone_unit_ = unit;
   const std::size_t records = captures_.size();
   for (std::size_t i = records; i > 0 && captures_.at(i - 1).unit >= unit;
        --i) {  // bound: the ledger's capacity

@@ -60,7 +60,7 @@ class PainterStage final : public Stage {
   void show(const CapturedFrame& frame) noexcept;
   void paint(const PaintOrder& order, Instant now) noexcept;
   void go_on(Instant now) noexcept;
-  void painted(const PaintOrder& order, Instant now) noexcept;
+  void painted(const PaintOrder& order, bool on_surface, Instant now) noexcept;
   void fail(const PaintOrder& order, Instant now) noexcept;
   void take_back(Instant now) noexcept;
   void done_with(std::uint32_t buffer) noexcept;
@@ -77,9 +77,14 @@ class PainterStage final : public Stage {
   CapturedFrame newest_;
   bool have_newest_ = false;
   bool upload_due_ = false;
-  std::array<std::uint32_t, 64> units_{};  ///< painted and not undone, newest last
+  struct Unit {
+    std::uint32_t number = 0;
+    bool on_surface = false;  ///< false: nothing of it is on the surface, and the painter knows of none
+  };
+  std::array<Unit, 64> units_{};  ///< captured and not undone, newest last
   std::uint32_t unit_count_ = 0;
-  PaintOrder carried_;  ///< what the texel cap stopped
+  std::uint32_t cancelled_unit_ = 0, undone_unit_ = 0;  ///< the last ones: what still comes of them is let go
+  PaintOrder carried_;                                  ///< what the texel cap stopped
   bool is_carried_ = false;
   PaintState state_;
 };
