@@ -15,8 +15,18 @@ namespace orcart {
 /// How the tracker is reached; the simulated one is made together with the rest of the simulated cart.
 enum class TrackerKind : std::uint8_t { simulated, usb, tty, tcp, replay };
 
+/// Whether what it measures is there now: else every view wears the mark.
 constexpr bool is_device(TrackerKind kind) noexcept {
-  return kind != TrackerKind::simulated && kind != TrackerKind::replay;
+  switch (kind) {
+    case TrackerKind::usb:
+    case TrackerKind::tty:
+    case TrackerKind::tcp:
+      return true;
+    case TrackerKind::simulated:
+    case TrackerKind::replay:
+      break;
+  }
+  return false;
 }
 
 struct TrackerConfig {
