@@ -34,14 +34,9 @@ Result<void> write_map(const std::filesystem::path& out, const TexelValues& show
     const Picture picture = seen_by_scope(shown, surface.mesh, scene.rays, scene.scope, last);
     return write_png(out, picture.width_px, picture.height_px, picture.rgba);
   }
-  auto places = shown.layout.corners_texels;
-  for (auto& corners : places)
-    for (Eigen::Vector2f& corner : corners)
-      corner = {corner.x() / static_cast<float>(shown.layout.width_texels),
-                1 - corner.y() / static_cast<float>(shown.layout.height_texels)};
   const AtlasPicture colours = colours_of(shown);
   return write_textured(out, {.surface = surface,
-                              .corners_uv = places,
+                              .corners_uv = picture_places(shown.layout),
                               .width_texels = colours.width_texels,
                               .height_texels = colours.height_texels,
                               .rgba = colours.rgba});
