@@ -34,7 +34,7 @@ class Panel {
   virtual Result<std::uint64_t, PortFault> present(Instant now) noexcept = 0;
   /// The oldest flip not yet taken.
   virtual std::optional<Flip> take_flip(Instant now) noexcept = 0;
-  /// The first vblank after `now`, as far as it can be told.
+  /// The first vblank after `now`, which may be past, as far as it can be told.
   virtual Instant next_vblank(Instant now) const noexcept = 0;
 };
 

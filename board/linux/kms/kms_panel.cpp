@@ -119,10 +119,12 @@ std::optional<Flip> KmsPanel::take_flip(Instant now) noexcept {
   return flip;
 }
 
+// Of an instant before the newest vblank too: a picture is late by the one that it should have made.
 Instant KmsPanel::next_vblank(Instant now) const noexcept {
-  const Nanos period = period_of(scan_out_->mode().refresh_hz);
-  if (now < last_vblank_) return last_vblank_;
-  return last_vblank_ + ((now - last_vblank_) / period + 1) * period;
+  const Nanos period = period_of(scan_out_->mode().refresh_hz), since = now - last_vblank_;
+  const auto before =
+      since / period - (since % period < Nanos{0} ? 1 : 0);  // vblanks up to now, rounded down
+  return last_vblank_ + (before + 1) * period;
 }
 
 }  // namespace orcart

@@ -131,10 +131,23 @@ TYPED_TEST_P(PanelContract, NamesAVblankWithinOnePeriod) {
   }
 }
 
+TYPED_TEST_P(PanelContract, NamesTheVblankThatAPictureMissed) {
+  ASSERT_NE(this->show_one(), 0U);
+  const auto flip = this->await_flip();
+  ASSERT_TRUE(flip);
+  for (int missed = 1; missed < 4; ++missed) {
+    const Instant due = flip->at - missed * this->period() - this->period() / 2;
+    const Instant vblank = this->rig.panel().next_vblank(due);
+    EXPECT_GT(vblank, due) << missed;
+    EXPECT_LE(vblank, due + this->period() + 1us) << missed;
+  }
+}
+
 REGISTER_TYPED_TEST_SUITE_P(PanelContract, LendsABufferOfItsModeThatCanBeWritten,
                             LendsTheSameBufferUntilItIsPresented, RefusesAPresentWithoutABuffer,
                             FlipsAtTheVblankAfterThePresentAndNamesThePicture, TellsNoFlipBeforeThereIsOne,
                             IsBusyWhileAPictureWaitsAndTakesTheNextAfterItsFlip,
-                            CountsPresentsAndNeverLendsWhatIsShown, NamesAVblankWithinOnePeriod);
+                            CountsPresentsAndNeverLendsWhatIsShown, NamesAVblankWithinOnePeriod,
+                            NamesTheVblankThatAPictureMissed);
 
 }  // namespace orcart::testing
