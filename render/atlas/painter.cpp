@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
+#include "render/atlas/atlas_textures.hpp"
 #include "render/atlas/coverage_counter.hpp"
 #include "render/atlas/paint_program.hpp"
 #include "render/atlas/scope_depth.hpp"
@@ -35,16 +37,16 @@ struct Painter::State {
   ScopeModel scope;
   PainterSettings settings;
   SurfaceTextures surface;
-  std::vector<ScopeDepth> depth;                  ///< exactly one
-  std::vector<UndoStore> undo;                    ///< exactly one
-  std::vector<CoverageCounter> coverage;          ///< exactly one
-  std::vector<gles::PictureTexture> picture;      ///< exactly one
-  std::vector<TouchedCells> touched_cells;        ///< exactly one
+  // All but by_processor are there once create() is done.
+  std::optional<ScopeDepth> depth;
+  std::optional<UndoStore> undo;
+  std::optional<CoverageCounter> coverage;
+  std::optional<gles::PictureTexture> picture;
+  std::optional<TouchedCells> touched_cells;
   std::unique_ptr<ProcessorTexels> by_processor;  ///< where the processor paints
-  gles::Texture atlas, records, mask;
-  gles::Framebuffer atlas_framebuffer, record_framebuffer;  ///< each alone
-  gles::Framebuffer both;                                   ///< what is painted into
-  std::vector<PaintProgram> programs;                       ///< by TextureMode
+  AtlasTextures atlas;
+  gles::Texture mask;                  ///< paper mode's triangles, a bit each
+  std::vector<PaintProgram> programs;  ///< by TextureMode
   gles::VertexArray vertex_array;
   gles::Buffer rects;
 
@@ -60,16 +62,9 @@ struct Painter::State {
   TextureMode mode = TextureMode::perspective;
   ViewLight light;
 
-  KeptAtlas kept() const {
-    return {.colour = {atlas.id(), atlas_framebuffer.id()},
-            .record = {records.id(), record_framebuffer.id()},
-            .size_texels = layout->width_texels};
-  }
   Result<void> make_programs();
   Result<void> make_atlas(const Surface& surface);
-  Result<void> make_targets();
   void make_picture();
-  void wipe() noexcept;
   void collect(const CutoutPatch& patch, const Pose<C, M>& X_CM) noexcept;
   PaintReport paint_some() noexcept;
   void paint_by_gpu(std::span<const std::uint32_t> cells) noexcept;
@@ -89,56 +84,28 @@ Result<void> Painter::State::make_programs() {
     if (!made) return tl::unexpected(made.error());
     programs.push_back(std::move(*made));
   }
-  view.depth_texture = depth[0].texture();
+  view.depth_texture = depth->texture();
   view.mask_texture = mask.id();
-  view.before_texture = undo[0].before_texture();
-  view.uniforms = uniforms_of(scope, settings, layout->texel_mm, depth[0].pinhole());
+  view.before_texture = undo->before_texture();
+  view.uniforms = uniforms_of(scope, settings, layout->texel_mm, depth->pinhole());
   return {};
 }
 
 void Painter::State::make_picture() {
   using Keeps = gles::PicturePyramid::Keeps;
   const PictureCopy copy = by_processor ? PictureCopy::cpu : settings.picture_copy;
-  picture.clear();
-  picture.emplace_back(scope.width_px, scope.height_px, copy,
-                       by_processor ? Keeps::all_levels : Keeps::coarser_levels);
-}
-
-Result<void> Painter::State::make_targets() {
-  const int width = layout->width_texels, height = layout->height_texels;
-  atlas = gles::make_texture({GL_RGBA8, width, height, GL_LINEAR});
-  records = gles::make_texture({GL_RGBA16UI, width, height});
-  auto of_atlas = gles::make_framebuffer(atlas.id()), of_records = gles::make_framebuffer(records.id());
-  if (!of_atlas) return tl::unexpected(of_atlas.error());
-  if (!of_records) return tl::unexpected(of_records.error());
-  atlas_framebuffer = std::move(*of_atlas);
-  record_framebuffer = std::move(*of_records);
-  auto of_both = gles::make_framebuffer(atlas.id());
-  if (!of_both) return tl::unexpected(of_both.error());
-  both = std::move(*of_both);
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, records.id(), 0);
-  constexpr std::array<GLenum, 2> kTargets{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-  glDrawBuffers(kTargets.size(), kTargets.data());
-  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    return fail("the driver cannot draw colours and records side by side");
-  wipe();
-  return {};
-}
-
-void Painter::State::wipe() noexcept {
-  constexpr std::array<GLfloat, 4> kBare{};
-  constexpr std::array<GLuint, 4> kNothing{};
-  glBindFramebuffer(GL_FRAMEBUFFER, both.id());
-  glClearBufferfv(GL_COLOR, 0, kBare.data());
-  glClearBufferuiv(GL_COLOR, 1, kNothing.data());
+  picture.emplace(scope.width_px, scope.height_px, copy,
+                  by_processor ? Keeps::all_levels : Keeps::coarser_levels);
 }
 
 Result<void> Painter::State::make_atlas(const Surface& from) {
   const std::vector<float> points = texel_points(from.mesh, *layout);
   surface = make_surface_textures(from.mesh, *layout, points);
-  if (auto made = make_targets(); !made) return made;
+  auto textures = AtlasTextures::create(layout->width_texels);
+  if (!textures) return tl::unexpected(textures.error());
+  atlas = std::move(*textures);
   if (settings.paint_by == PaintBy::processor)
-    by_processor = std::make_unique<ProcessorTexels>(from.mesh, kept(), depth[0].pinhole(),
+    by_processor = std::make_unique<ProcessorTexels>(from.mesh, atlas.kept(), depth->pinhole(),
                                                      choices_of(scope, settings), points);
   const std::size_t words = (from.mesh.triangles.size() + 31) / 32;
   const int rows = static_cast<int>((words + kMaskRow - 1) / kMaskRow);
@@ -147,8 +114,8 @@ Result<void> Painter::State::make_atlas(const Surface& from) {
 
   vertex_array = gles::make_vertex_array();
   glBindVertexArray(vertex_array.id());
-  touched_cells.emplace_back(*layout);
-  const std::size_t cell_count = touched_cells[0].most_cells();
+  touched_cells.emplace(*layout);
+  const std::size_t cell_count = touched_cells->most_cells();
   rects = gles::make_buffer(GL_ARRAY_BUFFER, cell_count * sizeof(ChartRect), nullptr, GL_STREAM_DRAW);
   glEnableVertexAttribArray(0);
   glVertexAttribPointer(0, 4, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(ChartRect), nullptr);
@@ -156,13 +123,13 @@ Result<void> Painter::State::make_atlas(const Surface& from) {
   glBindVertexArray(0);
 
   quads.reserve(cell_count);
-  auto store = UndoStore::create(kept(), settings.undo_units);
+  auto store = UndoStore::create(atlas.kept(), settings.undo_units);
   if (!store) return tl::unexpected(store.error());
-  undo.push_back(std::move(*store));
+  undo = std::move(*store);
   const auto texels = static_cast<std::uint64_t>(std::count(layout->inside.begin(), layout->inside.end(), 1));
-  auto counter = CoverageCounter::create(kept(), surface.owner.id(), texels);
+  auto counter = CoverageCounter::create(atlas.kept(), surface.owner.id(), texels);
   if (!counter) return tl::unexpected(counter.error());
-  coverage.push_back(std::move(*counter));
+  coverage = std::move(*counter);
   return {};
 }
 
@@ -183,7 +150,7 @@ Result<Painter> Painter::create(const Surface& surface, const AtlasLayout& layou
                              .size_texels = depth_size_for(scope)};
   auto depth = ScopeDepth::create(surface.mesh, pinhole);
   if (!depth) return tl::unexpected(depth.error());
-  state->depth.push_back(std::move(*depth));
+  state->depth = std::move(*depth);
   if (auto made = state->make_atlas(surface); !made) return tl::unexpected(made.error());
   state->make_picture();
   if (auto made = state->make_programs(); !made) return tl::unexpected(made.error());
@@ -217,12 +184,12 @@ Painter& Painter::operator=(Painter&&) noexcept = default;
 Painter::~Painter() = default;
 
 bool Painter::upload(const ImageDescriptor& image) noexcept {
-  return state_->picture[0].upload(image);
+  return state_->picture->upload(image);
 }
 
 void Painter::State::collect(const CutoutPatch& patch, const Pose<C, M>& X_CM) noexcept {
   if (patch.first_part) {
-    touched_cells[0].begin();
+    touched_cells->begin();
     view_box.setEmpty();
     set_pose(view.uniforms, X_CM);
     mode = patch.mode;
@@ -233,14 +200,14 @@ void Painter::State::collect(const CutoutPatch& patch, const Pose<C, M>& X_CM) n
   if (settings.light == LightModel::auto_exposure) light.add(*mesh, patch.triangles);
   for (const std::uint32_t triangle : patch.triangles) {
     if (mode == TextureMode::paper) mask_words[triangle >> 5] |= 1u << (triangle & 31);
-    touched_cells[0].add(triangle);
+    touched_cells->add(triangle);
     for (const std::uint32_t corner : mesh->triangles[triangle]) view_box.extend(mesh->vertices_mm[corner]);
   }
 }
 
 PaintReport Painter::paint(const CutoutPatch& patch, std::uint32_t unit) noexcept {
   State& s = *state_;
-  if (s.picture[0].empty() || (patch.mode == TextureMode::paper && !patch.paper.valid)) return {};
+  if (s.picture->empty() || (patch.mode == TextureMode::paper && !patch.paper.valid)) return {};
   const Pose<C, M> X_CM = patch.X_MC.inverse();
   s.collect(patch, X_CM);
   s.unit = unit;
@@ -248,7 +215,7 @@ PaintReport Painter::paint(const CutoutPatch& patch, std::uint32_t unit) noexcep
   if (s.processor_paints())
     s.by_processor->see(patch, X_CM);
   else if (patch.mode == TextureMode::perspective)
-    s.depth[0].draw(patch, X_CM);
+    s.depth->draw(patch, X_CM);
   if (!patch.last_part) return {};
   s.view.uniforms.u_light.z = s.settings.light == LightModel::auto_exposure ? s.light.mean() : 1.0F;
   if (s.mode == TextureMode::paper) {
@@ -264,7 +231,7 @@ PaintReport Painter::paint_more() noexcept {
 }
 
 PaintReport Painter::State::paint_some() noexcept {
-  TouchedCells& touches = touched_cells[0];
+  TouchedCells& touches = *touched_cells;
   const std::span<const std::uint32_t> cells = touches.next(settings.max_texels_per_step);
   const PaintReport report{.painted = !cells.empty(),
                            .carried = touches.more(),
@@ -273,12 +240,12 @@ PaintReport Painter::State::paint_some() noexcept {
   note_change(view_box);
   if (unit != kept_unit || !processor_paints()) settle();  // else tiles not kept yet are not painted since
   kept_unit = unit;
-  undo[0].keep(unit, touches.tiles());
+  undo->keep(unit, touches.tiles());
   if (processor_paints()) {
-    by_processor->paint(cells, touches.tiles(), view.uniforms, picture[0].in_memory());
-    coverage[0].touch(touches.tiles());
+    by_processor->paint(cells, touches.tiles(), view.uniforms, picture->in_memory());
+    coverage->touch(touches.tiles());
   } else {
-    undo[0].show_before(touches.tiles());
+    undo->show_before(touches.tiles());
     paint_by_gpu(cells);
     changed(touches.tiles());
   }
@@ -287,23 +254,23 @@ PaintReport Painter::State::paint_some() noexcept {
 
 /// Other than by the processor's painting.
 void Painter::State::changed(std::span<const std::uint32_t> tiles) noexcept {
-  coverage[0].touch(tiles);
+  coverage->touch(tiles);
   if (by_processor) by_processor->forget(tiles);
 }
 
 void Painter::State::paint_by_gpu(std::span<const std::uint32_t> cells) noexcept {
-  const std::uint32_t cells_per_row = touched_cells[0].cells_per_row();
+  const std::uint32_t cells_per_row = touched_cells->cells_per_row();
   quads.clear();
   for (const std::uint32_t cell : cells) {
     quads.push_back({static_cast<std::uint16_t>(cell % cells_per_row * kCellTexels),
                      static_cast<std::uint16_t>(cell / cells_per_row * kCellTexels), kCellTexels,
                      kCellTexels});
   }
-  glBindFramebuffer(GL_FRAMEBUFFER, both.id());
+  glBindFramebuffer(GL_FRAMEBUFFER, atlas.framebuffer_of_both());
   glViewport(0, 0, layout->width_texels, layout->height_texels);
   glEnable(GL_BLEND);  // colours alone: records are integers
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  programs[static_cast<std::size_t>(mode)].use(view, surface, picture[0]);
+  programs[static_cast<std::size_t>(mode)].use(view, surface, *picture);
   glBindVertexArray(vertex_array.id());
   glBindBuffer(GL_ARRAY_BUFFER, rects.id());
   glBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(quads.size() * sizeof(ChartRect)),
@@ -316,7 +283,7 @@ void Painter::State::paint_by_gpu(std::span<const std::uint32_t> cells) noexcept
 bool Painter::undo() noexcept {
   state_->note_change(kEverything);
   state_->settle();
-  const auto tiles = state_->undo[0].undo();
+  const auto tiles = state_->undo->undo();
   state_->changed(tiles);
   return !tiles.empty();
 }
@@ -324,54 +291,32 @@ bool Painter::undo() noexcept {
 bool Painter::redo() noexcept {
   state_->note_change(kEverything);
   state_->settle();
-  const auto tiles = state_->undo[0].redo();
+  const auto tiles = state_->undo->redo();
   state_->changed(tiles);
   return !tiles.empty();
 }
 
 void Painter::clear() noexcept {
   state_->note_change(kEverything);
-  state_->wipe();
+  state_->atlas.wipe();
   if (state_->by_processor) state_->by_processor->clear();
-  state_->undo[0].forget_all();
-  state_->coverage[0].touch_all();
+  state_->undo->forget_all();
+  state_->coverage->touch_all();
 }
 
 double Painter::coverage() noexcept {
   state_->settle();
-  return state_->coverage[0].update();
+  return state_->coverage->update();
 }
 
 AtlasPicture Painter::read_back() const {
-  AtlasPicture picture{.width_texels = state_->layout->width_texels,
-                       .height_texels = state_->layout->height_texels};
-  picture.rgba.resize(4 * static_cast<std::size_t>(picture.width_texels) *
-                      static_cast<std::size_t>(picture.height_texels));
   state_->settle();
-  glBindFramebuffer(GL_FRAMEBUFFER, state_->atlas_framebuffer.id());
-  glReadPixels(0, 0, picture.width_texels, picture.height_texels, GL_RGBA, GL_UNSIGNED_BYTE,
-               picture.rgba.data());
-  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
-    const unsigned alpha = picture.rgba[i + 3];
-    if (alpha == 0 || alpha == 255) continue;
-    for (std::size_t c = i; c < i + 3; ++c) {
-      picture.rgba[c] =
-          static_cast<std::uint8_t>(std::min(255u, (picture.rgba[c] * 255u + alpha / 2) / alpha));
-    }
-  }
-  return picture;
+  return state_->atlas.read_colours();
 }
 
 AtlasRecords Painter::read_records() const {
-  AtlasRecords records{.width_texels = state_->layout->width_texels,
-                       .height_texels = state_->layout->height_texels};
-  records.texels.resize(static_cast<std::size_t>(records.width_texels) *
-                        static_cast<std::size_t>(records.height_texels));
   state_->settle();
-  glBindFramebuffer(GL_FRAMEBUFFER, state_->record_framebuffer.id());
-  glReadPixels(0, 0, records.width_texels, records.height_texels, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT,
-               records.texels.data());
-  return records;
+  return state_->atlas.read_records();
 }
 
 void Painter::set_turn(double turn_rad) noexcept {
@@ -397,8 +342,8 @@ PaintedAtlas Painter::painted(PaintBy drawn_by) const noexcept {
   PaintedAtlas atlas;
   if (drawn_by == PaintBy::gpu) {
     s.settle();
-    atlas.colour_texture = s.atlas.id();
-    atlas.record_texture = s.records.id();
+    atlas.colour_texture = s.atlas.colours();
+    atlas.record_texture = s.atlas.records();
   } else if (s.by_processor) {
     const TexelMemory& memory = s.by_processor->up_to_date();
     atlas.colours = memory.colours;
@@ -407,12 +352,13 @@ PaintedAtlas Painter::painted(PaintBy drawn_by) const noexcept {
   }
   return atlas;
 }
+
 PictureCopy Painter::picture_copy() const noexcept {
-  return state_->picture[0].copy();
+  return state_->picture->copy();
 }
 
 const gles::PictureTexture& Painter::picture() const noexcept {
-  return state_->picture[0];
+  return *state_->picture;
 }
 
 }  // namespace orcart

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -14,23 +13,16 @@
 #include "realtime/mapper/cutout_patch.hpp"
 #include "realtime/optics/scope_model.hpp"
 #include "render/atlas/atlas_layout.hpp"
+#include "render/atlas/atlas_picture.hpp"
 #include "render/atlas/paint_settings.hpp"
 #include "render/atlas/texel_record.hpp"
 
 namespace orcart {
 
-/// Read back from the GPU: straight RGBA, row 0 first as in AtlasLayout; alpha 0 where nothing was painted.
-/// Of a view: opaque.
-struct AtlasPicture {
-  int width_texels = 0, height_texels = 0;
-  std::vector<std::uint8_t> rgba;
-};
-
 struct PaintReport {
   bool painted = false;
-  bool carried = false;  ///< the texel cap was reached; call paint_more()
-  std::uint32_t charts = 0;
-  std::uint32_t texels = 0;  ///< texels of the charts that were gone through
+  bool carried = false;      ///< the texel cap was reached; call paint_more()
+  std::uint32_t texels = 0;  ///< that were gone through
 };
 
 /// What is on the surface, where it was asked for.

@@ -20,7 +20,7 @@ Result<void> UndoStore::make_layer(TexelKind kind, const KeptLayer& kept, Layer&
   layer.scratch_framebuffer = std::move(*scratch);
   auto copier = TileCopier::create(kind, most_moves);
   if (!copier) return tl::unexpected(copier.error());
-  layer.copier.push_back(std::move(*copier));
+  layer.copier = std::move(*copier);
   return {};
 }
 
@@ -84,7 +84,7 @@ void UndoStore::keep(std::uint32_t unit, std::span<const std::uint32_t> tiles) n
     moves_.push_back(move_to_store(tile, slot));
   }
   for (Layer& layer : layers_)
-    layer.copier[0].copy(layer.kept.texture, {layer.store_framebuffer.id(), store_size_texels_}, moves_);
+    layer.copier->copy(layer.kept.texture, {layer.store_framebuffer.id(), store_size_texels_}, moves_);
 }
 
 void UndoStore::show_before(std::span<const std::uint32_t> tiles) noexcept {
@@ -94,8 +94,7 @@ void UndoStore::show_before(std::span<const std::uint32_t> tiles) noexcept {
     moves_.push_back({move.from_x, move.from_y, move.from_x, move.from_y});
   }
   Layer& records = layers_[1];
-  records.copier[0].copy(records.kept.texture, {records.scratch_framebuffer.id(), atlas_.size_texels},
-                         moves_);
+  records.copier->copy(records.kept.texture, {records.scratch_framebuffer.id(), atlas_.size_texels}, moves_);
 }
 
 std::span<const std::uint32_t> UndoStore::undo() noexcept {
@@ -128,9 +127,9 @@ std::span<const std::uint32_t> UndoStore::swap_unit(const Unit& unit) noexcept {
 
 // Atlas to scratch, store to atlas, scratch to store.
 void UndoStore::swap(Layer& layer) noexcept {
-  layer.copier[0].copy(layer.kept.texture, {layer.scratch_framebuffer.id(), atlas_.size_texels}, moves_);
-  layer.copier[0].copy(layer.store.id(), {layer.kept.framebuffer, atlas_.size_texels}, out_);
-  layer.copier[0].copy(layer.scratch.id(), {layer.store_framebuffer.id(), store_size_texels_}, back_);
+  layer.copier->copy(layer.kept.texture, {layer.scratch_framebuffer.id(), atlas_.size_texels}, moves_);
+  layer.copier->copy(layer.store.id(), {layer.kept.framebuffer, atlas_.size_texels}, out_);
+  layer.copier->copy(layer.scratch.id(), {layer.store_framebuffer.id(), store_size_texels_}, back_);
 }
 
 /// After a step back or forth: the unit that is now the newest has kept its tiles already, should it go on.

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -55,7 +56,7 @@ class UndoStore {
     KeptLayer kept;
     gles::Texture store, scratch;
     gles::Framebuffer store_framebuffer, scratch_framebuffer;
-    std::vector<TileCopier> copier;  ///< exactly one
+    std::optional<TileCopier> copier;  ///< once it is made
   };
   UndoStore() = default;
   Result<void> make_layer(TexelKind kind, const KeptLayer& kept, Layer& layer, std::size_t most_moves);

@@ -54,8 +54,8 @@ struct Screen::State {
   ScreenSettings settings;
   ScopeModel scope;
   PanelLayout layout;
-  std::vector<SurfaceView> view;  ///< exactly one
-  std::vector<HudCanvas> canvas;  ///< exactly one
+  std::optional<SurfaceView> view;  ///< this and the next once create() is done
+  std::optional<HudCanvas> canvas;
   gles::Texture picture;
   gles::Framebuffer framebuffer;
   gles::Texture status_picture;  ///< column and bar, as `told`
@@ -84,7 +84,7 @@ struct Screen::State {
   void warm_up();
   void redraw(const ScreenState& state, const Painter& painter, const PaintedAtlas& paint) noexcept;
   PixelBox whole_view() const noexcept {
-    return {0, 0, view[0].settings().width_px, view[0].settings().height_px};
+    return {0, 0, view->settings().width_px, view->settings().height_px};
   }
   void show_view(GLuint into) noexcept;
   void show_status(const Told& now, GLuint into) noexcept;
@@ -138,11 +138,11 @@ Result<Screen> Screen::create(const Surface& surface, const AtlasLayout& layout,
                                    .most_triangles = settings.most_triangles,
                                    .draw_by = settings.draw_by});
   if (!view) return tl::unexpected(view.error());
-  state->view.push_back(std::move(*view));
+  state->view = std::move(*view);
   auto canvas = HudCanvas::create(
       {.width_px = settings.width_px, .height_px = settings.height_px, .rows = RowOrder::top_first});
   if (!canvas) return tl::unexpected(canvas.error());
-  state->canvas.push_back(std::move(*canvas));
+  state->canvas = std::move(*canvas);
   state->stale_view = state->whole_view();
   state->picture = gles::make_texture({GL_RGBA8, settings.width_px, settings.height_px});
   auto framebuffer = gles::make_framebuffer(state->picture.id());
@@ -165,10 +165,10 @@ void Screen::State::warm_up() {
   const gles::Texture unknown = gles::make_texture({GL_RGBA16UI, 1, 1});
   Eye eye;
   eye.position_mm = {0, 0, 1};
-  view[0].draw(eye, {unpainted.id(), unknown.id()}, {});
+  view->draw(eye, {unpainted.id(), unknown.id()}, {});
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.id());
   glViewport(0, 0, settings.width_px, settings.height_px);
-  draw_column_and_bar(canvas[0], layout, {}, InsetContent::blank);
+  draw_column_and_bar(*canvas, layout, {}, InsetContent::blank);
   glFinish();
   if (settings.draw_by == PaintBy::processor) return;
   std::vector<std::byte> black(packed_bytes(PixelFormat::rgba8888, scope.width_px, scope.height_px));
@@ -210,7 +210,7 @@ void Screen::State::show_view(GLuint into) noexcept {
   const bool own = into == framebuffer.id();
   const PixelBox part = own ? stale_view : whole_view();
   if (!part.empty())
-    view[0].copy_to(into, static_cast<int>(layout.view.x), static_cast<int>(layout.view.y), part);
+    view->copy_to(into, static_cast<int>(layout.view.x), static_cast<int>(layout.view.y), part);
   stale_view = own ? PixelBox{} : whole_view();
 }
 
@@ -219,7 +219,7 @@ void Screen::State::show_status(const Told& now, GLuint into) noexcept {
   const bool own = into == framebuffer.id(), renewed = told != now;
   if (renewed) {
     glBindFramebuffer(GL_FRAMEBUFFER, status_framebuffer.id());
-    draw_column_and_bar(canvas[0], layout, now.status, now.inset);
+    draw_column_and_bar(*canvas, layout, now.status, now.inset);
     if (processor_inset) processor_inset->lay_on(status_framebuffer.id());
     told = now;
   }
@@ -254,7 +254,7 @@ void Screen::State::cover(const HudBox& box) noexcept {
 
 void Screen::State::redraw(const ScreenState& state, const Painter& painter,
                            const PaintedAtlas& paint) noexcept {
-  if (drawn && drawn_version == state.paint_version && drawn_eye == state.eye && view[0].settled()) return;
+  if (drawn && drawn_version == state.paint_version && drawn_eye == state.eye && view->settled()) return;
   constexpr std::uint64_t kRemembered = 16;
   Eigen::AlignedBox3f changed;
   const std::uint64_t now = painter.changes();
@@ -262,7 +262,7 @@ void Screen::State::redraw(const ScreenState& state, const Painter& painter,
        ++i) {
     changed.extend(painter.touched_by(i));
   }
-  stale_view = united(stale_view, view[0].draw(state.eye, paint, changed));
+  stale_view = united(stale_view, view->draw(state.eye, paint, changed));
   drawn = true;
   drawn_version = state.paint_version;
   drawn_changes = now;
@@ -280,7 +280,7 @@ bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageD
   s.show_view(into);
   const bool live = state.show_live && !painter.picture().empty();
   s.show_status({state.status, live ? InsetContent::picture : InsetContent::blank}, into);
-  HudCanvas& canvas = s.canvas[0];
+  HudCanvas& canvas = *s.canvas;
   const TurnedOptics optics = optics_at(s.scope, state.turn_rad);
   if (state.X_MC)
     draw_scope(canvas, s.layout.view, state.eye,
