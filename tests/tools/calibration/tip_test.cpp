@@ -78,9 +78,10 @@ double share_held(std::size_t count, int draws, double lens_deviation_px, std::u
           testing::board_before(known_mm + kWindow_mm, {0.1 * normal(random), 0.1 * normal(random), 0});
       BoardView view{.image = "view", .width_px = 640, .height_px = 480};
       for (int k = 0; k < 35; ++k) {
-        const Eigen::Vector3d place(7 + 2.0 * (k % 7), 5 + 2.0 * (k / 7), 0);
+        const int column = k % 7, row = k / 7;
+        const Eigen::Vector3d place(7 + 2.0 * column, 5 + 2.0 * row, 0);
         const auto pixel = project(truth, (X_CB * Point<B>{place}).mm);
-        view.corners.push_back({.lattice = {k % 7, k / 7},
+        view.corners.push_back({.lattice = {column, row},
                                 .pixel_px = *pixel + 0.2 * Eigen::Vector2d(normal(random), normal(random)),
                                 .board_mm = place});
       }
