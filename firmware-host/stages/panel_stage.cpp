@@ -188,15 +188,17 @@ void PanelStage::fill_status(Instant now) noexcept {
   if (scope_.turn_lack == TurnLack::none) screen_state_.turn_rad = scope_.turn_rad;
   screen_state_.X_MC = show_scope ? std::optional(scope_.X_MC) : std::nullopt;
 
-  if (paint.version != screen_state_.paint_version || now >= coverage_due_) {
-    screen_state_.paint_version = paint.version;
-    if (now >= coverage_due_) {
-      coverage_.store(parts_.painter.coverage(), std::memory_order_relaxed);
-      status.coverage = static_cast<float>(coverage());
-      if (longest_latency_ > Nanos{0})
-        status.latency_ms = static_cast<float>(milliseconds(std::exchange(longest_latency_, Nanos{0})));
-      coverage_due_ = now + 500ms;
-    }
+  const bool stands = paint.version == screen_state_.paint_version;
+  if (!stands && counted_version_ == screen_state_.paint_version) coverage_due_ = now + kFiguresEvery;
+  screen_state_.paint_version = paint.version;
+  if (counted_version_ != paint.version && (stands || now >= coverage_due_)) {
+    coverage_.store(parts_.painter.coverage(), std::memory_order_relaxed);
+    status.coverage = static_cast<float>(coverage());
+    counted_version_ = paint.version;
+  }
+  if (now >= latency_due_ && longest_latency_ > Nanos{0}) {
+    status.latency_ms = static_cast<float>(milliseconds(std::exchange(longest_latency_, Nanos{0})));
+    latency_due_ = now + kFiguresEvery;
   }
   tell_misses();
   choose_notice(now);

@@ -79,6 +79,8 @@ class PanelStage final : public Stage {
   void notice_turn() noexcept;
   void notice(Notice::Level level, std::string_view text) noexcept;
 
+  static constexpr Nanos kFiguresEvery = 500ms;  ///< more often nobody reads them
+
   Parts parts_;
   PanelStageSettings settings_;
   ScreenState screen_state_;
@@ -94,8 +96,10 @@ class PanelStage final : public Stage {
   std::uint64_t presented_ = 0;
   Instant count_due_{};  ///< of the pictures a second
   std::uint32_t since_counted_ = 0;
-  Instant coverage_due_{};
-  Nanos longest_latency_{0};  ///< of the frames since the panel last said it
+  Instant latency_due_{};
+  Instant coverage_due_{};             ///< of a painting that goes on; else in the picture after a change
+  std::uint64_t counted_version_ = 0;  ///< of the painting whose coverage is told
+  Nanos longest_latency_{0};           ///< of the frames since the panel last said it
   std::atomic<double> coverage_{0};
 };
 

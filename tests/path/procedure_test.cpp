@@ -132,6 +132,23 @@ TEST(Procedure, StreamsEveryFrameOfAHeldPedalAndTakesTheStreamBackAsOne) {
   for (std::size_t i = 1; i < captures.size(); ++i) EXPECT_TRUE(captures.at(i).undone) << i;
 }
 
+TEST(Procedure, TellsTheCoverageWithinTwoPicturesOfWhatChangedIt) {
+  auto rig = CartRig::create(presses());
+  ASSERT_TRUE(rig && rig->arm());
+  const Nanos period = period_of(rig->config.panel.refresh_hz);
+  const auto& captures = rig->cart->captures();
+  Nanos until = 0ms;
+  while (captures.size() == 0 && until < 2s) rig->run_until(until += period);
+  ASSERT_EQ(captures.size(), 1u);
+  rig->run_until(until += 2 * period);
+  EXPECT_GT(rig->cart->now().coverage, 0);
+
+  while (!captures.at(0).undone && until < 4s) rig->run_until(until += period);
+  ASSERT_TRUE(captures.at(0).undone);
+  rig->run_until(until += 2 * period);
+  EXPECT_EQ(rig->cart->now().coverage, 0);
+}
+
 TEST(Procedure, TellsTheCoverageWhileItGrows) {
   auto rig = CartRig::create(presses());
   ASSERT_TRUE(rig && rig->arm());
