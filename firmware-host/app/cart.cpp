@@ -96,6 +96,7 @@ Result<void> Cart::start() {
     s.thread_ledgers.push_back(&thread.ledger());
     for (const std::string& lack : thread.rights().lacks) s.lacks.push_back(lack);
   }
+  if (!s.lacks.empty()) s.showing->tell_degraded();  // known only now: each thread asks for its own rights
   return {};
 }
 

@@ -145,7 +145,6 @@ void Cart::State::build_stages() {
           .eye = eye_on(patient.surface.mesh, vector_of(config.view_from), vector_of(config.view_up)),
           .simulated = config.simulated(),
           .software_rendering = context.render_class() == RenderClass::software,
-          .degraded = !lacks.empty(),
           .turn = config.turn,
           .painting_blocked = patient.painting_blocked,
           .submit_deadline = budget.dequeue_to_submitted.bound,

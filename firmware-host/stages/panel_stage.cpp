@@ -93,7 +93,6 @@ PanelStage::PanelStage(const Parts& parts, const PanelStageSettings& settings)
   screen_state_.eye = settings.eye;
   screen_state_.status.simulated = settings.simulated;
   screen_state_.status.software_rendering = settings.software_rendering;
-  screen_state_.status.degraded = settings.degraded;
   screen_state_.status.painting_blocked = !settings.painting_blocked.empty();
 }
 
@@ -104,7 +103,7 @@ StepReport PanelStage::step(Instant now) noexcept {
     fault_.set(target.error());
     return {};
   }
-  fill_status(now);
+  fill_status();
   parts_.screen.draw(screen_state_, parts_.painter, *target);
   const auto serial = parts_.panel.present(parts_.clock.now());
   fault_.set(serial || serial.error() == PortFault::busy ? PortFault::nothing_yet : serial.error());
@@ -164,11 +163,13 @@ void PanelStage::settle(const Submitted& shown, Instant scan_out) noexcept {
   }
 }
 
-void PanelStage::fill_status(Instant now) noexcept {
+// The clock is read after the news: what came since the step began is not from ahead of it.
+void PanelStage::fill_status() noexcept {
   (void)parts_.lanes.tracker_news.take(tracker_);
   (void)parts_.lanes.camera_news.take(camera_);
   (void)parts_.lanes.scope_now.take(scope_);
   (void)parts_.lanes.pedal_news.take(pedal_);
+  const Instant now = parts_.clock.now();
   const PaintState& paint = parts_.painter_stage.state();
   Status& status = screen_state_.status;
 
@@ -178,6 +179,7 @@ void PanelStage::fill_status(Instant now) noexcept {
   const bool tracked = rules.tool_seen(now, tracker_.last_complete);
   status.tool_seen = tracked || tracker_.scope == ToolState::seen;
   status.reference_seen = tracked || tracker_.reference == ToolState::seen;
+  status.degraded = degraded_.load(std::memory_order_relaxed);
   status.capture_acknowledged = paint.acknowledge_pending;
   status.streaming = paint.streaming;
   status.captures = paint.captures;

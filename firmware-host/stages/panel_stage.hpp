@@ -25,7 +25,6 @@ struct PanelStageSettings {
   Eye eye;
   bool simulated = true;
   bool software_rendering = true;
-  bool degraded = false;
   TurnSource turn = TurnSource::told;
   std::string painting_blocked;  ///< the reason, shown as long as the program runs; empty: it is not
   Nanos
@@ -58,6 +57,8 @@ class PanelStage final : public Stage {
   /// What the panel last refused a picture with, but for being busy; nothing_yet while it shows them. Any
   /// thread.
   PortFault fault() const noexcept { return fault_.get(); }
+  /// The machine does not grant what the threads want; said from the next picture on. Any thread.
+  void tell_degraded() noexcept { degraded_.store(true, std::memory_order_relaxed); }  // a flag alone
   /// A person turned the view; takes effect with the next picture. Same thread as step().
   void look_from(const Eye& eye) noexcept { screen_state_.eye = eye; }
 
@@ -73,7 +74,7 @@ class PanelStage final : public Stage {
   };
   void take_flips(Instant now) noexcept;
   void settle(const Submitted& shown, Instant scan_out) noexcept;
-  void fill_status(Instant now) noexcept;
+  void fill_status() noexcept;
   void tell_misses() noexcept;
   void choose_notice(Instant now) noexcept;
   void notice_turn() noexcept;
@@ -101,6 +102,7 @@ class PanelStage final : public Stage {
   std::uint64_t counted_version_ = 0;  ///< of the painting whose coverage is told
   Nanos longest_latency_{0};           ///< of the frames since the panel last said it
   std::atomic<double> coverage_{0};
+  std::atomic<bool> degraded_{false};
 };
 
 }  // namespace orcart

@@ -1,4 +1,4 @@
-// What the panel says besides the picture: plain data, filled in by the painter stage, drawn by the screen.
+// What the panel says besides the picture: plain data, filled in by the panel stage, drawn by the screen.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct Status {
   bool tool_seen = false;
   bool reference_seen = false;
   bool simulated = true;
-  bool degraded = false;  ///< no real-time rights, slips: see notice
+  bool degraded = false;  ///< the machine lacks rights that the threads want; the run's report names them
   bool software_rendering = false;
   bool painting_blocked = false;      ///< the passport forbids it: see notice
   bool capture_acknowledged = false;  ///< a press arrived; its picture is not painted yet

@@ -1,0 +1,72 @@
+// What the panel says of its sources and of the machine.
+#include "firmware-host/stages/panel_stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include "board/sim/simulated_panel.hpp"
+#include "tests/firmware-host/stages/stage_lanes.hpp"
+#include "tests/render/support/offscreen.hpp"
+#include "tests/render/support/scenes.hpp"
+
+namespace orcart::testing {
+namespace {
+
+/// A small panel over a plate; tracker at 60 Hz, video at 30.
+class PanelStageTest : public ::testing::Test {
+ protected:
+  static constexpr PanelMode kMode{.width_px = 320, .height_px = 200, .refresh_hz = 30};
+
+  const Status& status_at(Nanos step, Nanos clock) {
+    clock_.advance_to(instant_from_nanos(clock.count()));
+    stage_.step(instant_from_nanos(step.count()));
+    return stage_.status();
+  }
+
+  const ScopeModel scope_ = scenes::scope();
+  const Surface wall_ = scenes::plane(20, 30, 6);
+  const AtlasLayout layout_ = *build_atlas(wall_.mesh, {.texel_mm = 0.5});
+  Painter painter_ = [this] {
+    shared_context();
+    return std::move(*Painter::create(wall_, layout_, scope_, {}));
+  }();
+  Screen screen_ = std::move(
+      *Screen::create(wall_, layout_, scope_, {.width_px = kMode.width_px, .height_px = kMode.height_px}));
+  SimulatedClock clock_;
+  SimulatedPanel panel_{clock_, {.mode = kMode}};
+  Lanes lanes_{small_lanes()};
+  std::vector<CutoutPatch> patches_{1};
+  Ledger<FrameRecord> frames_{16};
+  Ledger<CaptureRecord> captures_{16};
+  PainterStage painting_{
+      {.painter = painter_, .lanes = lanes_, .patches = patches_, .captures = captures_, .buffer_count = 1}};
+  PanelStage stage_{{.panel = panel_,
+                     .screen = screen_,
+                     .painter = painter_,
+                     .painter_stage = painting_,
+                     .clock = clock_,
+                     .lanes = lanes_,
+                     .frames = frames_,
+                     .captures = captures_},
+                    {.eye = eye_on(wall_.mesh, {0, 0, -1}, {0, -1, 0}),
+                     .freshness = {.tracker_period = 16ms, .video_period = 33ms}}};
+};
+
+TEST_F(PanelStageTest, WhatCameSinceTheStepBeganIsLive) {
+  const Instant came = instant_from_nanos(Nanos{2003ms}.count());
+  lanes_.tracker_news.post({.last_reply = came, .last_complete = came, .running = true});
+  lanes_.camera_news.post({.last_frame = came});
+  const Status& status = status_at(2000ms, 2004ms);
+  EXPECT_EQ(status.tracker, Freshness::live);
+  EXPECT_EQ(status.video, Freshness::live);
+  EXPECT_TRUE(status.tool_seen);
+  EXPECT_EQ(status_at(2200ms, 2200ms).tracker, Freshness::lost);
+}
+
+TEST_F(PanelStageTest, SaysDegradedOnceItWasTold) {
+  EXPECT_FALSE(status_at(2000ms, 2000ms).degraded);
+  stage_.tell_degraded();
+  EXPECT_TRUE(status_at(2200ms, 2200ms).degraded);
+}
+
+}  // namespace
+}  // namespace orcart::testing
