@@ -68,6 +68,12 @@ TurnedOptics optics_at(const ScopeModel& scope, double turn_rad) noexcept {
   return optics;
 }
 
+std::optional<Eigen::Vector3d> shaft_of(const ScopeModel& scope, const TurnedOptics& at) noexcept {
+  if (!scope.turning || scope.turning->view_angle_rad == 0) return Eigen::Vector3d::UnitZ();
+  if (scope.turning->marker == TurnMarker::shaft && !scope.turning->R_SL) return std::nullopt;
+  return at.X_SC.rotation.transpose() * scope.turning->axis;
+}
+
 MarkedTurn turn_of(const Turning& turning, const Eigen::Matrix3d& R_SL) noexcept {
   const Eigen::Quaterniond since(R_SL * turning.R_SL.value_or(Eigen::Matrix3d::Identity()).transpose());
   const double along = since.vec().dot(turning.axis);

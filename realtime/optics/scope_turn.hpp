@@ -25,6 +25,11 @@ struct TurnedOptics {
 /// nothing is allocated.
 TurnedOptics optics_at(const ScopeModel& scope, double turn_rad) noexcept;
 
+/// The shaft's direction towards the tip, in C at these optics: C's z axis where the passport has no turning.
+/// Nothing where an angled scope's passport does not tell it (the marker on the shaft and no second one). Any
+/// thread; nothing is allocated.
+std::optional<Eigen::Vector3d> shaft_of(const ScopeModel& scope, const TurnedOptics& at) noexcept;
+
 /// What two markers on either side of the coupler say of the turn.
 struct MarkedTurn {
   double turn_rad = 0;   ///< about the calibrated axis, -pi..pi

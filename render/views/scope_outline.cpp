@@ -55,6 +55,16 @@ class Outliner {
   EyeMatrices matrices_;
 };
 
+void draw_shaft(Outliner& outliner, const Eigen::Vector3d& tip, const Eigen::Vector3d& along) {
+  const Eigen::Vector3d across =
+      std::abs(along.y()) < 0.8 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d beside = kRadiusMm * along.cross(across).normalized();
+  for (const double side : {-1.0, 1.0}) {
+    const Eigen::Vector3d edge = tip + side * beside;
+    outliner.long_line(edge, edge - kShaftMm * along, 2);
+  }
+}
+
 }  // namespace
 
 void draw_scope(HudCanvas& canvas, const HudBox& view, const Eye& eye, const ScopeOutline& outline) noexcept {
@@ -68,10 +78,7 @@ void draw_scope(HudCanvas& canvas, const HudBox& view, const Eye& eye, const Sco
     outliner.line(from, to, 1.5f);
     if (i % 6 == 0) outliner.line(tip, from, 1.2f);
   }
-  for (const double side : {-1.0, 1.0}) {
-    const Eigen::Vector3d edge = tip + Eigen::Vector3d(side * kRadiusMm, 0, 0);
-    outliner.long_line(edge, edge - Eigen::Vector3d(0, 0, kShaftMm), 2);
-  }
+  if (outline.shaft) draw_shaft(outliner, tip, *outline.shaft);
   outliner.line(tip - Eigen::Vector3d(kRadiusMm, 0, 0), tip + Eigen::Vector3d(kRadiusMm, 0, 0), 2);
   outliner.line(tip - Eigen::Vector3d(0, kRadiusMm, 0), tip + Eigen::Vector3d(0, kRadiusMm, 0), 2);
 }

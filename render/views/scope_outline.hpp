@@ -1,6 +1,8 @@
 // The scope drawn over the view: its shaft, its viewing cone and a crosshair at the distal window.
 #pragma once
 
+#include <optional>
+
 #include "realtime/geometry/pose.hpp"
 #include "render/hud/hud_canvas.hpp"
 #include "render/views/eye.hpp"
@@ -10,6 +12,8 @@ namespace orcart {
 struct ScopeOutline {
   Pose<M, C> X_MC;
   Pose<C, E> X_CE;
+  /// Its direction towards the tip, in C; nothing: not known, and not drawn.
+  std::optional<Eigen::Vector3d> shaft = Eigen::Vector3d::UnitZ();
   double cone_half_angle_rad = 0;
   bool predicted = false;  ///< dashed: not measured, extrapolated
 };

@@ -286,6 +286,7 @@ bool Screen::draw(const ScreenState& state, const Painter& painter, const ImageD
     draw_scope(canvas, s.layout.view, state.eye,
                {.X_MC = *state.X_MC,
                 .X_CE = optics.X_CE,
+                .shaft = shaft_of(s.scope, optics),
                 .cone_half_angle_rad = s.scope.cone_half_angle_rad,
                 .predicted = state.scope_predicted});
   draw_banners(canvas, s.layout, state.status);

@@ -46,6 +46,30 @@ Eigen::Vector2d gone_round(const Eigen::Vector2d& pixel, double turn_rad) {
 
 class EveryScope : public ::testing::TestWithParam<std::tuple<LensModel, double, TurnMarker>> {};
 
+TEST_P(EveryScope, KnowsItsShaftAtEveryTurn) {
+  const auto [model, view_deg, marker] = GetParam();
+  ScopeModel scope = scope_of(model, view_deg, marker);
+  scope.turning->R_SL = Eigen::Matrix3d::Identity();  // a second marker: the axis was calibrated
+  for (const double turn_deg : {-180.0, -75.0, 0.0, 12.0, 90.0}) {
+    const TurnedOptics at = optics_at(scope, turn_deg * kDegree);
+    const auto shaft = shaft_of(scope, at);
+    ASSERT_TRUE(shaft);
+    EXPECT_NEAR(std::acos(shaft->z()), view_deg * kDegree, 1e-6) << turn_deg;
+    // Under a marker on the head the shaft stays; with one on it C turns about its own axis: in C it goes
+    // round as the picture does, either way.
+    const Eigen::Vector3d expected = Eigen::AngleAxisd(turn_deg * kDegree, Eigen::Vector3d::UnitZ()) *
+                                     *shaft_of(scope, optics_at(scope, 0));
+    EXPECT_LT((*shaft - expected).norm(), 1e-9) << turn_deg;
+  }
+}
+
+TEST(Shaft, IsNotToldByAPassportThatDoesNotKnowIt) {
+  const ScopeModel angled = scope_of(LensModel::brown, 30, TurnMarker::shaft);
+  EXPECT_FALSE(shaft_of(angled, optics_at(angled, 0.5)));
+  const ScopeModel straight{};
+  EXPECT_EQ(shaft_of(straight, optics_at(straight, 0)), Eigen::Vector3d::UnitZ());
+}
+
 TEST_P(EveryScope, SeesAtATurnWhatWentRound) {
   const auto [model, view_deg, marker] = GetParam();
   const ScopeModel scope = scope_of(model, view_deg, marker);
