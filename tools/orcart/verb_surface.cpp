@@ -20,8 +20,8 @@ namespace orcart {
 namespace {
 
 constexpr const char* kFooter =
-    "A folder of DICOM slices, NIfTI, NRRD or MetaImage: the region is every voxel connected to a seed "
-    "whose\n"
+    "DICOM (a folder of slices, or an enhanced multi-frame file), NIfTI, NRRD or MetaImage: the region is\n"
+    "every voxel connected to a seed whose "
     "intensity lies from LO to HI (Hounsfield in CT). Seeds are millimetres in DICOM's LPS (x to the "
     "patient's left,\n"
     "y to the back, z up); with --seed-space RAS they are as MNI atlases and NIfTI viewers give them.\n"
@@ -162,7 +162,7 @@ void add_growing_options(CLI::App& verb, Arguments& arguments) {
                   "of the seeds: LPS (DICOM, the default) or RAS (MNI, NIfTI viewers)")
       ->check(CLI::IsMember({"LPS", "RAS"}));
   verb.add_option("--range", arguments.range, "LO:HI, the intensities of the region, both included");
-  verb.add_option("--stack", arguments.stack, "of a DICOM folder that holds several, from 1")
+  verb.add_option("--stack", arguments.stack, "of DICOM that holds several (series, echoes, times), from 1")
       ->check(CLI::Range(1, 1'000'000));
   verb.add_option("--denoise", arguments.denoise_mm, "Gaussian over the volume before growing, sigma in mm")
       ->check(CLI::Range(0.0, 10.0));
@@ -190,7 +190,7 @@ void add_surface(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<Arguments>();
   verb->footer(kFooter);
   verb->add_option("input", arguments->input,
-                   "a folder of DICOM slices, NIfTI, NRRD, MetaImage; or PLY, STL, OBJ, mz3, VTK, VTP")
+                   "a DICOM folder or enhanced file, NIfTI, NRRD, MetaImage; or PLY, STL, OBJ, mz3, VTK, VTP")
       ->required();
   verb->add_option("--space", arguments->space, "patient space of a file that states none: LPS or RAS")
       ->check(CLI::IsMember({"LPS", "RAS"}));

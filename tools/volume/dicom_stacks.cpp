@@ -16,11 +16,6 @@ double dot(const PlainPoint& a, const PlainPoint& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-PlainPoint normal_of(const DicomSlice& slice) {
-  const auto& [u, v] = std::tie(slice.along_columns, slice.along_rows);
-  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-}
-
 std::string millimetres(double mm) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g mm", mm);
@@ -78,19 +73,23 @@ DicomStack stack_of(std::vector<DicomSlice> slices) {
   return stack;
 }
 
+std::string short_name(const DicomSlice& slice) {
+  return slice.file.filename().string() +
+         (slice.frame > 0 ? ", frame " + std::to_string(slice.frame) + "," : "");
+}
+
 /// Cuts one group, sorted along its normal, at its gaps.
 Result<void> cut_at_gaps(const std::string& folder, std::vector<DicomSlice> group,
                          std::vector<DicomStack>& stacks) {
   const PlainPoint normal = normal_of(group.front());
-  const auto height = [&](const DicomSlice& slice) { return dot(slice.position_mm, normal); };
+  const auto height = [&](const DicomSlice& slice) { return height_mm(slice, normal); };
   std::stable_sort(group.begin(), group.end(),
                    [&](const DicomSlice& a, const DicomSlice& b) { return height(a) < height(b); });
   std::vector<double> steps;
   for (std::size_t i = 1; i < group.size(); ++i) {
     steps.push_back(height(group[i]) - height(group[i - 1]));
-    if (steps.back() < 1e-3)
-      return fail(folder + ": " + group[i - 1].file.filename().string() + " and " +
-                  group[i].file.filename().string() +
+    if (steps.back() < kSamePlaceMm)
+      return fail(folder + ": " + short_name(group[i - 1]) + " and " + short_name(group[i]) +
                   " lie at the same place and nothing in them says why; one volume (one series, one time, "
                   "one echo) is expected");
   }
@@ -120,21 +119,24 @@ std::string describe(const DicomStack& stack) {
 }
 
 /// A scanner that steps or pauses counts acquisitions up within one volume; one that scans twice, with and
-/// without contrast, does too. They are one volume where the next begins behind the last one's end.
-std::vector<std::vector<DicomSlice>> by_acquisition(std::vector<DicomSlice> group) {
+/// without contrast, does too; files and the stacks in a file are alike. They are one volume where the next
+/// begins behind the last one's end, else each is one of its own, and says so with `label`.
+std::vector<std::vector<DicomSlice>> by_part(std::vector<DicomSlice> group, std::string DicomSlice::*key,
+                                             const std::string& label) {
   std::map<std::string, std::vector<DicomSlice>> parts;
   const PlainPoint normal = normal_of(group.front());
-  for (const DicomSlice& slice : group) parts[slice.acquisition].push_back(slice);
+  for (const DicomSlice& slice : group) parts[slice.*key].push_back(slice);
   std::vector<std::pair<double, double>> spans;
   for (const auto& [number, part] : parts) {
     const auto [low, high] = std::minmax_element(part.begin(), part.end(), [&](const auto& a, const auto& b) {
-      return dot(a.position_mm, normal) < dot(b.position_mm, normal);
+      return height_mm(a, normal) < height_mm(b, normal);
     });
-    spans.emplace_back(dot(low->position_mm, normal), dot(high->position_mm, normal));
+    spans.emplace_back(height_mm(*low, normal), height_mm(*high, normal));
   }
   std::sort(spans.begin(), spans.end());
   bool apart = true;
-  for (std::size_t i = 1; i < spans.size(); ++i) apart = apart && spans[i].first > spans[i - 1].second + 1e-3;
+  for (std::size_t i = 1; i < spans.size(); ++i)
+    apart = apart && spans[i].first > spans[i - 1].second + kSamePlaceMm;
   std::vector<std::vector<DicomSlice>> groups;
   if (apart) {
     groups.push_back(std::move(group));
@@ -142,9 +144,24 @@ std::vector<std::vector<DicomSlice>> by_acquisition(std::vector<DicomSlice> grou
   }
   for (auto& [number, part] : parts) {
     for (DicomSlice& slice : part)
-      slice.variant = "acquisition " + number + (slice.variant.empty() ? "" : ", " + slice.variant);
+      slice.variant = label + " " + number + (slice.variant.empty() ? "" : ", " + slice.variant);
     groups.push_back(std::move(part));
   }
+  return groups;
+}
+
+/// One group of a kind, as the volumes in it.
+std::vector<std::vector<DicomSlice>> volumes_of(std::vector<DicomSlice> group) {
+  auto groups = split_by_facets(std::move(group));
+  const auto refine = [&](std::string DicomSlice::*key, const std::string& label) {
+    std::vector<std::vector<DicomSlice>> finer;
+    for (auto& one : groups)
+      for (auto& part : by_part(std::move(one), key, label)) finer.push_back(std::move(part));
+    groups = std::move(finer);
+  };
+  refine(&DicomSlice::acquisition, "acquisition");
+  refine(&DicomSlice::part, "file");
+  refine(&DicomSlice::block, "stack");
   return groups;
 }
 
@@ -153,13 +170,27 @@ std::size_t drop_copies(std::vector<DicomSlice>& slices) {
   std::set<std::string> known;
   return std::erase_if(slices, [&](const DicomSlice& slice) {
     if (slice.instance.empty() || !slice.has_position) return false;
-    std::string key = slice.instance + "|" + slice.acquisition + "|" + kind_of(slice);
+    std::string key =
+        slice.instance + "|" + std::to_string(slice.frame) + "|" + slice.acquisition + "|" + kind_of(slice);
     for (const double x : slice.position_mm) key += "|" + std::to_string(x);
     return !known.insert(key).second;
   });
 }
 
 }  // namespace
+
+std::string name_of(const DicomSlice& slice) {
+  return slice.file.string() + (slice.frame > 0 ? ", frame " + std::to_string(slice.frame) : "");
+}
+
+PlainPoint normal_of(const DicomSlice& slice) {
+  const auto& [u, v] = std::tie(slice.along_columns, slice.along_rows);
+  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+
+double height_mm(const DicomSlice& slice, const PlainPoint& normal) {
+  return dot(slice.position_mm, normal);
+}
 
 Result<std::vector<DicomStack>> stack_slices(const std::string& folder, std::vector<DicomSlice> slices) {
   std::set<std::size_t> patients;
@@ -171,14 +202,14 @@ Result<std::vector<DicomStack>> stack_slices(const std::string& folder, std::vec
   std::map<std::string, std::vector<DicomSlice>> groups;
   for (DicomSlice& slice : slices) {
     if (!slice.has_position)
-      return fail(slice.file.string() +
+      return fail(name_of(slice) +
                   ": states no ImagePositionPatient and ImageOrientationPatient; slices that say where they "
                   "lie are expected (a secondary capture has no place)");
     groups[kind_of(slice)].push_back(std::move(slice));
   }
   std::vector<DicomStack> stacks;
   for (auto& [kind, group] : groups)
-    for (auto& part : by_acquisition(std::move(group)))
+    for (auto& part : volumes_of(std::move(group)))
       if (auto cut = cut_at_gaps(folder, std::move(part), stacks); !cut) return tl::unexpected(cut.error());
   if (copies > 0)
     for (DicomStack& stack : stacks)
@@ -211,7 +242,7 @@ Result<DicomStack> choose_stack(const std::string& folder, std::vector<DicomStac
     list += "; " + std::to_string(i + 1) + ": " + describe(stacks[i]);
   if (stacks.size() > kMostListed) list += "; and so on";
   return fail(folder + ": is no single volume but " + std::to_string(stacks.size()) +
-              " stacks (slices missing between them, or several series)" + list +
+              " stacks (slices missing between them, or several series, echoes or times)" + list +
               "; --stack N, to take one of them, is expected" +
               (wanted > 0 ? " with N up to " + std::to_string(stacks.size()) : ""));
 }

@@ -14,8 +14,11 @@ namespace {
 
 Result<Volume> read_dicom(const VolumeRequest& request, const std::function<void(double)>& progress) {
   const std::string name = request.path.string();
-  auto folder = read_dicom_folder(request.path);
+  auto folder = read_dicom_headers(request.path);
   if (!folder) return tl::unexpected(folder.error());
+  const bool one_slice = folder->slices.size() == 1 && folder->slices.front().frame == 0;
+  if (one_slice && !std::filesystem::is_directory(request.path))
+    return fail(name + ": is one DICOM image; the folder that holds the whole series is expected");
   auto stacks = stack_slices(name, std::move(folder->slices));
   if (!stacks) return tl::unexpected(stacks.error());
   auto stack = choose_stack(name, *std::move(stacks), request.stack);
@@ -27,19 +30,16 @@ Result<Volume> read_dicom(const VolumeRequest& request, const std::function<void
 
 Result<Volume> read_file(const VolumeRequest& request) {
   const std::string name = request.path.string();
-  if (is_dicom(request.path))
-    return fail(name + ": is one DICOM image; the folder that holds the whole series is expected");
   auto bytes = read_plain(request.path);
   if (!bytes) return tl::unexpected(bytes.error());
   const VolumeSource source{.file = request.path, .bytes = *bytes, .where_unstated = request.where_unstated};
   if (is_nrrd(*bytes)) return parse_nrrd(source);
   if (is_nifti(*bytes)) return parse_nifti(source);
   if (is_meta_image(*bytes)) return parse_meta_image(source);
-  return fail(
-      name +
-      ": is no volume that says what it holds; a folder of DICOM slices, NIfTI, NRRD and MetaImage are "
-      "accepted (voxels alone need a header beside them: a .mhd with NDims, DimSize, ElementType, "
-      "ElementSpacing, Offset, TransformMatrix and ElementDataFile)");
+  return fail(name +
+              ": is no volume that says what it holds; DICOM, NIfTI, NRRD and MetaImage are "
+              "accepted (voxels alone need a header beside them: a .mhd with NDims, DimSize, ElementType, "
+              "ElementSpacing, Offset, TransformMatrix and ElementDataFile)");
 }
 
 void mend_numbers(Volume& volume) {
@@ -63,8 +63,8 @@ Result<Volume> read_volume(const VolumeRequest& request, const std::function<voi
   if (!std::filesystem::exists(request.path))
     return fail(request.path.string() +
                 ": is not there; a volume file or a folder of DICOM slices is expected");
-  const bool folder = std::filesystem::is_directory(request.path);
-  auto volume = folder ? read_dicom(request, progress) : read_file(request);
+  const bool dicom = std::filesystem::is_directory(request.path) || is_dicom(request.path);
+  auto volume = dicom ? read_dicom(request, progress) : read_file(request);
   if (!volume) return volume;
   if (volume->series.empty()) volume->series = request.path.filename().string();
   mend_numbers(*volume);

@@ -1,4 +1,4 @@
-// Reads a CT or MR volume, whatever it comes as: a folder of DICOM slices, NIfTI, NRRD or MetaImage.
+// Reads a CT or MR volume, whatever it comes as: DICOM, NIfTI, NRRD or MetaImage.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 namespace orcart {
 
 struct VolumeRequest {
-  std::filesystem::path path;           ///< a folder of DICOM slices, or a file
+  std::filesystem::path path;           ///< a folder of DICOM, or a file
   std::optional<Space> where_unstated;  ///< of a file that states no patient space
   int stack = 0;                        ///< of a folder with several: from 1; 0 where it has one
 };
