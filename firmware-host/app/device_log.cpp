@@ -2,6 +2,16 @@
 #include "firmware-host/app/device_log.hpp"
 
 namespace orcart {
+namespace {
+
+std::string sentence_for(PortFault fault) {
+  if (fault == PortFault::nothing_yet) return "works again";
+  if (fault == PortFault::damaged)
+    return "every frame comes damaged; another cable, port or format of the camera may do";
+  return std::string(word_for(fault)) + "; tried again until it works";
+}
+
+}  // namespace
 
 std::string DeviceLog::news(const Cart::Now& now) {
   struct Watched {
@@ -15,11 +25,7 @@ std::string DeviceLog::news(const Cart::Now& now) {
     const PortFault fault = watched[i].fault;
     if (fault == known_[i]) continue;
     known_[i] = fault;
-    lines +=
-        std::string(watched[i].name) + ": " +
-        (fault == PortFault::nothing_yet ? std::string("works again")
-                                         : std::string(word_for(fault)) + "; tried again until it works") +
-        "\n";
+    lines += std::string(watched[i].name) + ": " + sentence_for(fault) + "\n";
   }
   if ((now.mismatch_deg != 0) != (mismatch_deg_ != 0))
     lines += now.mismatch_deg != 0

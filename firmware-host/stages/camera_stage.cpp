@@ -17,11 +17,12 @@ StepReport CameraStage::step(Instant) noexcept {
         recover(buffer.error());
         break;
       }
-      ++news_.damaged;
+      note_damaged();
       continue;
     }
     news_.connected = true;
     fault_.clear();
+    damaged_since_ = Instant::max();
     retry_at_ = Instant{};
     retry_after_ = kFirstRetry;
     CapturedFrame frame = intake_.accept(*buffer, clock_.now());
@@ -35,6 +36,13 @@ StepReport CameraStage::step(Instant) noexcept {
   news_.connected = news_.connected && !intake_.health().stamps_faulty;
   lanes_.camera_news.post(news_);
   return report;
+}
+
+// Nothing is restarted: the stream runs, and only whoever looks at cable or camera can mend what it brings.
+void CameraStage::note_damaged() noexcept {
+  ++news_.damaged;
+  damaged_since_ = std::min(damaged_since_, clock_.now());
+  if (clock_.now() - damaged_since_ >= kDamagedFor) fault_.set(PortFault::damaged);
 }
 
 void CameraStage::recover(PortFault fault) noexcept {

@@ -25,14 +25,17 @@ class CameraStage final : public Stage {
   const CameraNews& news() const noexcept { return news_; }  ///< the stage's own thread, or after it ended
   const CameraHealth& health() const noexcept { return intake_.health(); }  ///< likewise
 
-  /// What take() last failed with; nothing_yet since a frame came. Any thread.
+  /// What take() last failed with; nothing_yet since a frame came. A damaged frame counts once they have all
+  /// been damaged for kDamagedFor. Any thread.
   PortFault fault() const noexcept { return fault_.get(); }
 
   /// After a fault the stream is started again at once, then after 0.1 s, each time twice as late, up to 1 s.
   static constexpr Nanos kFirstRetry = 100ms, kLastRetry = 1s;
+  static constexpr Nanos kDamagedFor = 1s;
 
  private:
   void recover(PortFault fault) noexcept;
+  void note_damaged() noexcept;
 
   FrameSource& source_;
   const Clock& clock_;
@@ -42,6 +45,7 @@ class CameraStage final : public Stage {
   CameraNews news_;
   WatchedFault fault_;
   Instant retry_at_{};
+  Instant damaged_since_ = Instant::max();  ///< the first damaged frame since a good one
   Nanos retry_after_ = kFirstRetry;
 };
 

@@ -159,6 +159,21 @@ TEST_F(Camera, StreamsAgainAfterAFatalError) {
   EXPECT_LE(clock.now() - broken, 3s);  // within 1 s on a cart; a busy machine's guest takes longer
 }
 
+// The panel's inset always holds one.
+TEST_F(Camera, StreamsAgainAfterAFatalErrorWhileAPictureIsLent) {
+  if (!is_vivid()) GTEST_SKIP() << "only vivid can be told to fail";
+  Result<FrameBuffer, PortFault> lent = tl::unexpected(PortFault::nothing_yet);
+  for (const Instant end = clock.now() + 2s; !lent && clock.now() < end; lent = source->take())
+    source->wait(clock.now() + 5ms);
+  ASSERT_TRUE(lent);
+  press("inject_fatal_streaming_error");
+  EXPECT_EQ(fault_within(1s), PortFault::io);
+  ASSERT_TRUE(source->recover()) << source->trouble();
+  EXPECT_TRUE(good_frame(2s));
+  source->give_back(lent->index);
+  EXPECT_TRUE(good_frame(2s));
+}
+
 TEST_F(Camera, SaysThatTheStreamDoesNotStartAndStartsItLater) {
   if (!is_vivid()) GTEST_SKIP() << "only vivid can be told to fail";
   press("inject_vidioc_streamon_error");

@@ -87,6 +87,15 @@ Result<KernelBuffers, PortFault> request_buffers(const OpenDevice& device, std::
   return buffers;
 }
 
+// A mapping keeps its file alive: close() alone would leave the queue with its owner until the last one is
+// gone.
+void release_buffers(const OpenDevice& device) noexcept {
+  v4l2_requestbuffers none{};
+  none.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  none.memory = V4L2_MEMORY_MMAP;
+  (void)device.control(VIDIOC_REQBUFS, &none);
+}
+
 Result<FilledBuffer, PortFault> dequeue_buffer(const OpenDevice& device) noexcept {
   v4l2_buffer buffer = buffer_named(0);
   if (auto taken = done(device.control(VIDIOC_DQBUF, &buffer)); !taken) return tl::unexpected(taken.error());

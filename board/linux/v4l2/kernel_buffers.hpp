@@ -53,6 +53,11 @@ struct KernelBuffers {
 Result<KernelBuffers, PortFault> request_buffers(const OpenDevice& device, std::uint32_t count,
                                                  std::size_t bytes) noexcept;
 
+/// Gives the queue up, so that a device opened anew may have it: whatever of it is mapped stays readable, but
+/// is the driver's no longer (Linux 4.20 and later). Closing the device does not do it while one buffer is
+/// mapped.
+void release_buffers(const OpenDevice& device) noexcept;
+
 /// A buffer that came back filled.
 struct FilledBuffer {
   std::uint32_t index = 0, sequence = 0, bytes = 0, field = 0;

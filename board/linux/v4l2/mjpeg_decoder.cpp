@@ -9,6 +9,8 @@
 
 #include <jpeglib.h>
 
+#include <jerror.h>
+
 namespace orcart {
 namespace {
 
@@ -89,6 +91,12 @@ MjpegDecoder::State& state_of(j_common_ptr jpeg) {
 
 void say_nothing(j_common_ptr) {}
 
+/// A negative level is a warning. Bytes that are skipped before a marker spoil nothing, and many USB cameras
+/// pad with a few of them in every frame; every other warning is of pixels that are not the camera's.
+void count_damage(j_common_ptr jpeg, int level) {
+  if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) ++jpeg->err->num_warnings;
+}
+
 void* take(j_common_ptr jpeg, int pool, std::size_t bytes) {
   MjpegDecoder::State& state = state_of(jpeg);
   if (pool == JPOOL_PERMANENT) return state.own.alloc_small(jpeg, pool, bytes);
@@ -154,9 +162,7 @@ Result<MjpegDecoder> MjpegDecoder::create(int width_px, int height_px) {
   jpeg_decompress_struct& jpeg = state->jpeg;
   jpeg.err = jpeg_std_error(&state->errors);
   state->errors.error_exit = leave;
-  state->errors.emit_message = [](j_common_ptr common, int level) {
-    if (level < 0) ++common->err->num_warnings;
-  };
+  state->errors.emit_message = count_damage;
   state->errors.output_message = say_nothing;
   if (setjmp(state->leave) != 0) return fail("libjpeg cannot start");
   jpeg_create_decompress(&jpeg);

@@ -118,6 +118,7 @@ void V4l2FrameSource::stop() noexcept {
 
 Result<void, PortFault> V4l2FrameSource::recover() noexcept {
   end_stream();
+  if (device_.valid()) release_buffers(device_);
   device_.reset();
   wire_.clear();
   for (Slot& slot : slots_) {

@@ -17,6 +17,14 @@ TEST(DeviceLog, TellsADeviceThatGoesAndComesBackOnceEach) {
   EXPECT_EQ(log.news(now), "encoder: works again\n");
 }
 
+TEST(DeviceLog, TellsOfFramesThatAllComeDamagedAndWhatMayHelp) {
+  DeviceLog log;
+  Cart::Now now;
+  now.camera = PortFault::damaged;
+  EXPECT_EQ(log.news(now),
+            "camera: every frame comes damaged; another cable, port or format of the camera may do\n");
+}
+
 TEST(DeviceLog, TellsATurnThatTheNotchContradictsOnceAndWhenTheyAgreeAgain) {
   DeviceLog log;
   Cart::Now now;

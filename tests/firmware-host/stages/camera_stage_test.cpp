@@ -94,6 +94,26 @@ TEST_F(CameraStageTest, CountsADamagedFrameAndGoesOnToTheNext) {
   EXPECT_EQ(all_of(lanes.frames).size(), 1u);
 }
 
+TEST_F(CameraStageTest, TellsOfACameraAllOfWhoseFramesAreDamaged) {
+  const Instant began = clock.now();
+  for (; clock.now() - began < 1s; clock.advance_by(40ms)) {
+    camera.script = {tl::unexpected(PortFault::damaged)};
+    (void)step();
+    EXPECT_EQ(stage.fault(), PortFault::nothing_yet);
+  }
+  camera.script = {tl::unexpected(PortFault::damaged)};
+  (void)step();
+  EXPECT_EQ(stage.fault(), PortFault::damaged);
+  EXPECT_TRUE(camera.recoveries.empty()) << "the stream runs";
+  camera.script = {buffer(0)};
+  (void)step();
+  EXPECT_EQ(stage.fault(), PortFault::nothing_yet);
+  clock.advance_by(2s);
+  camera.script = {tl::unexpected(PortFault::damaged)};
+  (void)step();
+  EXPECT_EQ(stage.fault(), PortFault::nothing_yet) << "one alone is no news";
+}
+
 TEST_F(CameraStageTest, TellsThatTheCameraIsGoneUntilAFrameComes) {
   EXPECT_TRUE(step().connected);
   camera.script = {tl::unexpected(PortFault::disconnected)};

@@ -14,6 +14,7 @@ struct JpegSample {
   int quality = 90;
   int chroma_h = 2, chroma_v = 1;  ///< 4:2:2, the usual of a USB camera
   bool progressive = false;
+  unsigned restart_interval = 0;  ///< blocks between restart markers; 0: none
 };
 
 /// Red rises from left to right, green from top to bottom, blue is 64.
@@ -33,6 +34,7 @@ inline std::vector<std::byte> jpeg_ramp(const JpegSample& sample) {
   jpeg_set_quality(&jpeg, sample.quality, TRUE);
   jpeg.comp_info[0].h_samp_factor = sample.chroma_h;
   jpeg.comp_info[0].v_samp_factor = sample.chroma_v;
+  jpeg.restart_interval = sample.restart_interval;
   if (sample.progressive) jpeg_simple_progression(&jpeg);
   jpeg_start_compress(&jpeg, TRUE);
   std::vector<JSAMPLE> row(static_cast<std::size_t>(sample.width_px) * 3);

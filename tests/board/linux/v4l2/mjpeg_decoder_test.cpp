@@ -58,6 +58,31 @@ TEST_F(MjpegDecoderTest, CallsACutPictureDamagedWhereverItIsCut) {
   expect_ramp();
 }
 
+TEST_F(MjpegDecoderTest, PassesOverStrayBytesBeforeAMarkerAsManyCamerasSendThem) {
+  auto padded = jpeg_ramp({.restart_interval = 4});
+  ASSERT_TRUE(decode(padded));
+  const auto expected = pixels;
+  int markers = 0;
+  for (std::size_t i = 0; i + 1 < padded.size(); ++i) {  // RST0 to RST7, and the end
+    const auto code = std::to_integer<unsigned>(padded[i + 1]);
+    if (padded[i] != std::byte{0xFF} || code < 0xD0 || code > 0xD9 || code == 0xD8) continue;
+    padded.insert(padded.begin() + static_cast<std::ptrdiff_t>(i), 3, std::byte{0x5A});
+    i += 4;
+    ++markers;
+  }
+  ASSERT_GE(markers, 6);
+  std::ranges::fill(pixels, std::byte{0});
+  ASSERT_TRUE(decode(padded));
+  EXPECT_EQ(pixels, expected);
+}
+
+TEST_F(MjpegDecoderTest, CallsAPictureThatLacksARestartMarkerDamaged) {
+  auto jpeg = jpeg_ramp({.restart_interval = 4});
+  for (std::size_t i = 0; i + 1 < jpeg.size(); ++i)
+    if (jpeg[i] == std::byte{0xFF} && jpeg[i + 1] == std::byte{0xD2}) jpeg[i + 1] = std::byte{0xD5};
+  EXPECT_FALSE(decode(jpeg));
+}
+
 TEST_F(MjpegDecoderTest, SurvivesGarbageOfEveryKind) {
   std::mt19937 random(7);
   std::vector<std::byte> noise(4096);

@@ -63,10 +63,14 @@ class ScriptedCameraDevice final : public DeviceCalls {
     filled.clear();
     return 100 + opened;
   }
+  // A mapping keeps the file it is of: the driver hears of a close only when the last of them is gone, and
+  // until then the queue is that file's.
   void close(int fd) noexcept override {
     if (fd < 1000) {
       ++closed;
       streaming = false;
+      if (fd == owner_) owner_is_closed_ = true;
+      free_of_the_closed();
     } else {
       dma_bufs.erase(fd);
     }
@@ -77,7 +81,10 @@ class ScriptedCameraDevice final : public DeviceCalls {
     mapped[address] = {size, buffers[offset]};
     return address;
   }
-  void unmap(void* address, std::size_t) noexcept override { mapped.erase(address); }
+  void unmap(void* address, std::size_t) noexcept override {
+    mapped.erase(address);
+    free_of_the_closed();
+  }
   int wait(int, short, Instant deadline) noexcept override {
     int events = poll_error ? POLLERR : 0;
     if (source_change) events |= POLLPRI;
@@ -85,7 +92,7 @@ class ScriptedCameraDevice final : public DeviceCalls {
     if (events == 0) clock_.advance_to(deadline);
     return events;
   }
-  int control(int, unsigned long request, void* argument) noexcept override;
+  int control(int fd, unsigned long request, void* argument) noexcept override;
 
   int opened = 0, closed = 0;
   bool streaming = false;
@@ -102,13 +109,26 @@ class ScriptedCameraDevice final : public DeviceCalls {
   };
   int enumerate(unsigned long request, void* argument) const noexcept;
   int format_or_rate(unsigned long request, void* argument) noexcept;
+  int request_buffers(int fd, v4l2_requestbuffers& wanted) noexcept;
   int buffer_call(unsigned long request, void* argument) noexcept;
+  void free_of_the_closed() noexcept {
+    const bool is_mapped = std::ranges::any_of(
+        buffers, [&](const auto& buffer) { return mapped.contains(static_cast<void*>(buffer->data())); });
+    if (owner_is_closed_ && !is_mapped) free_buffers();
+  }
+  void free_buffers() noexcept {
+    buffers.clear();
+    owner_ = -1;
+    owner_is_closed_ = false;
+  }
   int dequeue(v4l2_buffer& buffer) noexcept;
 
   SimulatedClock& clock_;
   std::vector<std::shared_ptr<std::vector<std::byte>>> buffers;
   std::deque<Filled> filled;
   int next_dma_buf_ = 1000;
+  int owner_ = -1;  ///< the file whose queue it is
+  bool owner_is_closed_ = false;
 };
 
 inline int ScriptedCameraDevice::enumerate(unsigned long request, void* argument) const noexcept {
@@ -171,15 +191,18 @@ inline int ScriptedCameraDevice::dequeue(v4l2_buffer& buffer) noexcept {
   return 0;
 }
 
+/// What is mapped outlives its request, as an orphan.
+inline int ScriptedCameraDevice::request_buffers(int fd, v4l2_requestbuffers& wanted) noexcept {
+  if (owner_ >= 0 && fd != owner_) return -EBUSY;
+  free_buffers();
+  wanted.count = std::min(wanted.count, buffer_limit);
+  for (std::uint32_t i = 0; i < wanted.count; ++i)
+    buffers.push_back(std::make_shared<std::vector<std::byte>>(image_bytes));
+  if (wanted.count > 0) owner_ = fd;
+  return 0;
+}
+
 inline int ScriptedCameraDevice::buffer_call(unsigned long request, void* argument) noexcept {
-  if (request == VIDIOC_REQBUFS) {
-    auto& wanted = *static_cast<v4l2_requestbuffers*>(argument);
-    wanted.count = std::min(wanted.count, buffer_limit);
-    buffers.clear();
-    for (std::uint32_t i = 0; i < wanted.count; ++i)
-      buffers.push_back(std::make_shared<std::vector<std::byte>>(image_bytes));
-    return 0;
-  }
   if (request == VIDIOC_EXPBUF) {
     if (!exports) return -EINVAL;
     static_cast<v4l2_exportbuffer*>(argument)->fd = next_dma_buf_;
@@ -199,7 +222,7 @@ inline int ScriptedCameraDevice::buffer_call(unsigned long request, void* argume
   return 0;
 }
 
-inline int ScriptedCameraDevice::control(int, unsigned long request, void* argument) noexcept {
+inline int ScriptedCameraDevice::control(int fd, unsigned long request, void* argument) noexcept {
   switch (request) {
     case VIDIOC_QUERYCAP: {
       auto& capability = *static_cast<v4l2_capability*>(argument);
@@ -214,9 +237,12 @@ inline int ScriptedCameraDevice::control(int, unsigned long request, void* argum
     case VIDIOC_QUERYCTRL:
       return enumerate(request, argument);
     case VIDIOC_S_FMT:
+      if (owner_ >= 0) return -EBUSY;
+      return format_or_rate(request, argument);
     case VIDIOC_S_PARM:
       return format_or_rate(request, argument);
     case VIDIOC_REQBUFS:
+      return request_buffers(fd, *static_cast<v4l2_requestbuffers*>(argument));
     case VIDIOC_QUERYBUF:
     case VIDIOC_QBUF:
     case VIDIOC_DQBUF:

@@ -139,6 +139,20 @@ TEST_F(V4l2FrameSourceTest, KeepsLentPicturesReadableWhileTheDeviceIsPulledOutAn
   EXPECT_FALSE(device.mapped.contains(lent->image.planes[0].data));
 }
 
+TEST_F(V4l2FrameSourceTest, StreamsAgainWhileAPictureIsStillLent) {
+  open();
+  ASSERT_TRUE(device.fill());
+  const auto lent = source->take();
+  ASSERT_TRUE(lent);
+  device.dequeue_error = -EIO;
+  EXPECT_EQ(fault(), PortFault::io);
+  device.dequeue_error = 0;
+  ASSERT_TRUE(source->recover()) << source->trouble();
+  ASSERT_TRUE(device.fill());
+  EXPECT_TRUE(source->take());
+  EXPECT_TRUE(device.mapped.contains(lent->image.planes[0].data)) << "readable until it comes home";
+}
+
 TEST_F(V4l2FrameSourceTest, LendsNoBufferTwiceThoughItsDriverHandsItOutAgain) {
   open();
   ASSERT_TRUE(device.fill());
@@ -264,6 +278,7 @@ TEST_F(V4l2FrameSourceTest, RefusesInOneSentenceWithTheRemedy) {
 TEST_F(V4l2FrameSourceTest, SetsControlsByNameAndSaysWhatTheyTake) {
   open({.width_px = 64, .height_px = 48, .controls = {{"exposure_time_absolute", 80}}});
   EXPECT_EQ(device.controls[V4L2_CID_EXPOSURE_ABSOLUTE], 80);
+  source.reset();
   EXPECT_NE(refusal({.width_px = 64, .height_px = 48, .controls = {{"exposure_time_absolute", 9000}}})
                 .find("1 to 5000"),
             std::string::npos);
