@@ -5,10 +5,12 @@ our_sources() {
 }
 
 check_format() {
-  local unformatted
-  unformatted=$(cd "$ORCART_ROOT" && our_sources | xargs clang-format --dry-run --Werror 2>&1 |
-    sed -n 's/^\([^ :]*\):[0-9]*:[0-9]*: error: .*/\1/p' | sort -u)
+  local said unformatted status=0
+  said=$(cd "$ORCART_ROOT" && our_sources | xargs clang-format --dry-run --Werror 2>&1) || status=$?
+  unformatted=$(sed -n 's/^\([^ :]*\):[0-9]*:[0-9]*: error: .*/\1/p' <<<"$said" | sort -u)
+  # shellcheck disable=SC2086  # one word a file
   [ -z "$unformatted" ] || { say "run clang-format -i on:" $unformatted && return 1; }
+  [ "$status" -eq 0 ] || { say "clang-format did not look at every source: $(tail -n 1 <<<"$said")" && return 1; }
 }
 
 # check_tidy SECONDS: the sources changed last come first, so that what is new is always looked at.

@@ -39,11 +39,12 @@ install_packages() {
   return 1
 }
 
-# as_root COMMAND...: directly when root, through sudo where it asks nothing or a person may answer it.
+# as_root COMMAND...: directly when root, through sudo where it asks nothing or a person may answer it. It asks on the
+# terminal, whatever the command's own input and output are.
 as_root() {
   if [ "$(id -u)" -eq 0 ]; then
     "$@"
-  elif command -v sudo >/dev/null && { [ -t 0 ] || sudo -n true 2>/dev/null; }; then
+  elif command -v sudo >/dev/null && { sudo -n true 2>/dev/null || { : </dev/tty; } 2>/dev/null; }; then
     sudo "$@"
   else
     say "this user may not install packages: run tools/demo or tools/check as root once"
