@@ -94,7 +94,11 @@ void PainterStage::paint(const PaintOrder& order, Instant now) noexcept {
     if (last) done_with(order.frame.buffer);
     return;
   }
-  painter_.upload(order.frame.image);
+  if (!painter_.upload(order.frame.image)) {  // else the picture before it would be painted
+    (void)lanes_.patches_home.try_push(order.patch);
+    if (last) refuse(order, now);
+    return;
+  }
   upload_due_ = have_newest_;  // the inset goes back to the newest picture
   painter_.set_turn(order.turn_rad);
   if (last && errors_ != nullptr) painter_.set_view_error(errors_->at(order.X_MC));
@@ -106,8 +110,15 @@ void PainterStage::paint(const PaintOrder& order, Instant now) noexcept {
   if (!report.carried) painted(order, report.painted, now);
 }
 
+void PainterStage::refuse(const PaintOrder& order, Instant now) noexcept {
+  PaintOrder refused = order;
+  refused.refusal = Refusal::no_frame;
+  fail(refused, now);
+  done_with(order.frame.buffer);
+}
+
 void PainterStage::go_on(Instant now) noexcept {
-  painter_.upload(carried_.frame.image);
+  (void)painter_.upload(carried_.frame.image);  // was taken once
   upload_due_ = have_newest_;
   is_carried_ = painter_.paint_more().carried;
   if (!is_carried_) painted(carried_, true, now);
@@ -178,12 +189,13 @@ void PainterStage::done_with(std::uint32_t buffer) noexcept {
 void PainterStage::upload_newest(Instant now) noexcept {
   if (!upload_due_) return;
   upload_due_ = false;
-  painter_.upload(newest_.image);
+  if (!painter_.upload(newest_.image)) return;  // the one before stays, and grows old
   if (state_.newest.sequence == newest_.sequence && state_.newest.dequeued_at == newest_.dequeued_at) return;
   state_.newest = {.sequence = newest_.sequence,
                    .mid_exposure = newest_.mid_exposure(),
                    .dequeued_at = newest_.dequeued_at,
                    .uploaded_at = now};
+  state_.newest_exposed = newest_.exposure_end;
   state_.newest_is_new = true;
 }
 

@@ -29,6 +29,7 @@ struct PaintState {
   Instant undone_at{};
   Instant warned_at{};
   FrameRecord newest;          ///< the frame in the inset
+  Instant newest_exposed{};    ///< its exposure's end
   bool newest_is_new = false;  ///< not yet part of a submitted panel picture
 };
 
@@ -59,6 +60,7 @@ class PainterStage final : public Stage {
   void handle(const PaintOrder& order, Instant now) noexcept;
   void show(const CapturedFrame& frame) noexcept;
   void paint(const PaintOrder& order, Instant now) noexcept;
+  void refuse(const PaintOrder& order, Instant now) noexcept;
   void go_on(Instant now) noexcept;
   void painted(const PaintOrder& order, bool on_surface, Instant now) noexcept;
   void fail(const PaintOrder& order, Instant now) noexcept;

@@ -174,7 +174,10 @@ void PanelStage::fill_status() noexcept {
   Status& status = screen_state_.status;
 
   const FreshnessRules& rules = settings_.freshness;
-  status.video = shown_as(camera_.connected ? rules.video(now, camera_.last_frame) : Liveness::lost);
+  // The camera is judged by the newest that it sent, the inset by how far it lies behind that.
+  const Instant sent = std::max(camera_.last_frame, paint.newest_exposed);
+  const Liveness video = std::min(rules.video(now, sent), rules.video(sent, paint.newest_exposed));
+  status.video = shown_as(camera_.connected ? video : Liveness::lost);
   status.tracker = shown_as(rules.tracker(now, tracker_.last_reply));
   const bool tracked = rules.tool_seen(now, tracker_.last_complete);
   status.tool_seen = tracked || tracker_.scope == ToolState::seen;

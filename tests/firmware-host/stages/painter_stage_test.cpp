@@ -108,5 +108,24 @@ TEST_F(PainterStageTest, LetsGoWhatComesOfAUnitThatWasTakenBack) {
   EXPECT_NE(painting(), first);
 }
 
+TEST_F(PainterStageTest, RefusesAPictureThatIsNotTheScopesAndPaintsNoOtherInItsPlace) {
+  paint(1, 60);
+  const auto first = painting();
+  const FrameRecord shown = stage_.state().newest;
+  std::vector<std::byte> pixels(packed_bytes(PixelFormat::rgba8888, 64, 48));
+  const CapturedFrame frame{
+      .buffer = 1, .sequence = 1, .image = packed_image(pixels.data(), PixelFormat::rgba8888, 64, 48)};
+  push({.kind = PaintOrderKind::show, .frame = frame});
+  Pose<M, C> X_MC;
+  X_MC.translation_mm = {4, 0, 0};
+  patches_[1] = scenes::whole(wall_, X_MC);
+  push({.kind = PaintOrderKind::paint, .frame = frame, .request = {.unit = 2}, .patch = 1});
+  EXPECT_EQ(painting(), first);
+  ASSERT_EQ(captures_.size(), 2u);
+  EXPECT_EQ(captures_.at(1).refusal, Refusal::no_frame);
+  EXPECT_EQ(stage_.state().newest.sequence, shown.sequence) << "the inset shows what it showed";
+  EXPECT_EQ(all_of(lanes_.patches_home).size(), 2u);
+}
+
 }  // namespace
 }  // namespace orcart::testing

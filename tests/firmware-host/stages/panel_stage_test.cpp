@@ -16,6 +16,17 @@ class PanelStageTest : public ::testing::Test {
  protected:
   static constexpr PanelMode kMode{.width_px = 320, .height_px = 200, .refresh_hz = 30};
 
+  /// A picture that was exposed until then is shown from now on.
+  void show(Instant exposed) {
+    const CapturedFrame frame{.sequence = ++frames_shown_,
+                              .image = picture_.descriptor(),
+                              .exposure_start = exposed - 8ms,
+                              .exposure_end = exposed,
+                              .dequeued_at = exposed};
+    ASSERT_TRUE(lanes_.orders.try_push({.kind = PaintOrderKind::show, .frame = frame}));
+    painting_.step(exposed);
+  }
+
   const Status& status_at(Nanos step, Nanos clock) {
     clock_.advance_to(instant_from_nanos(clock.count()));
     stage_.step(instant_from_nanos(step.count()));
@@ -31,6 +42,8 @@ class PanelStageTest : public ::testing::Test {
   }();
   Screen screen_ = std::move(
       *Screen::create(wall_, layout_, scope_, {.width_px = kMode.width_px, .height_px = kMode.height_px}));
+  scenes::Rgba picture_ = scenes::flat(scope_, 90, 90, 90);
+  std::uint32_t frames_shown_ = 0;
   SimulatedClock clock_;
   SimulatedPanel panel_{clock_, {.mode = kMode}};
   Lanes lanes_{small_lanes()};
@@ -54,12 +67,25 @@ class PanelStageTest : public ::testing::Test {
 TEST_F(PanelStageTest, WhatCameSinceTheStepBeganIsLive) {
   const Instant came = instant_from_nanos(Nanos{2003ms}.count());
   lanes_.tracker_news.post({.last_reply = came, .last_complete = came, .running = true});
-  lanes_.camera_news.post({.last_frame = came});
+  show(came);
   const Status& status = status_at(2000ms, 2004ms);
   EXPECT_EQ(status.tracker, Freshness::live);
   EXPECT_EQ(status.video, Freshness::live);
   EXPECT_TRUE(status.tool_seen);
   EXPECT_EQ(status_at(2200ms, 2200ms).tracker, Freshness::lost);
+}
+
+TEST_F(PanelStageTest, ALivePictureKeepsUpWithWhatTheCameraSends) {
+  const auto at = [](Nanos since) { return instant_from_nanos(since.count()); };
+  show(at(2000ms));
+  for (const auto& [now, video] :
+       {std::pair(Nanos{2090ms}, Freshness::live), {2160ms, Freshness::stale}, {2260ms, Freshness::lost}}) {
+    lanes_.camera_news.post({.last_frame = at(now)});
+    EXPECT_EQ(status_at(now, now).video, video) << now.count();
+  }
+  show(at(2290ms));
+  EXPECT_EQ(status_at(2300ms, 2300ms).video, Freshness::live);
+  EXPECT_EQ(status_at(2400ms, 2400ms).video, Freshness::stale) << "the camera sends none";
 }
 
 TEST_F(PanelStageTest, SaysDegradedOnceItWasTold) {
