@@ -137,11 +137,12 @@ Result<Stated> read_rows(std::string_view text, const std::filesystem::path& fil
       return fail(place + "\"" + std::string(line.substr(0, 60)) + "\" is no point; " +
                   (fcsv ? "a row of Slicer's .fcsv is accepted" : kAccepted));
     std::string name = fcsv && header.label < fields.size() ? fields[header.label] : named ? fields[0] : "";
-    if (name.empty()) name = std::to_string(stated.points.size() + stated.unplaced.size() + 1);
+    const bool numbered = name.empty();
+    if (numbered) name = std::to_string(stated.points.size() + stated.unplaced.size() + 1);
     if (fcsv && is_unplaced(fields, header))
       stated.unplaced.push_back(name);
     else
-      stated.points.push_back({.name = name, .mm = *at});
+      stated.points.push_back({.name = name, .mm = *at, .numbered = numbered});
   }
   stated.space = header.space;
   return stated;
@@ -178,8 +179,8 @@ Result<void> take_markup(const JsonValue& markup, const std::string& name, State
     const std::size_t number = stated.points.size() + stated.unplaced.size() + 1;
     const JsonValue *place = point.member("position"), *label = point.member("label"),
                     *status = point.member("positionStatus");
-    const std::string called =
-        label != nullptr && !label->text.empty() ? label->text : std::to_string(number);
+    const bool numbered = label == nullptr || label->text.empty();
+    const std::string called = numbered ? std::to_string(number) : label->text;
     if (status != nullptr && status->text != "defined") {
       stated.unplaced.push_back(called);
       continue;
@@ -189,7 +190,7 @@ Result<void> take_markup(const JsonValue& markup, const std::string& name, State
     const Eigen::Vector3d at(place->items[0].number, place->items[1].number, place->items[2].number);
     if (!at.allFinite())
       return fail(name + ": control point " + std::to_string(number) + " is at no finite place");
-    stated.points.push_back({.name = called, .mm = mm * at});
+    stated.points.push_back({.name = called, .mm = mm * at, .numbered = numbered});
   }
   return {};
 }

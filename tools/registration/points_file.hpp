@@ -16,6 +16,7 @@ namespace orcart {
 struct NamedPoint {
   std::string name;
   Eigen::Vector3d mm = Eigen::Vector3d::Zero();
+  bool numbered = false;  ///< the file has no name for it: `name` is its number from 1
 };
 
 /// Points in LPS, mm. Slicer's files are turned into LPS by what they state; where they state nothing they

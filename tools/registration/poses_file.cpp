@@ -111,9 +111,11 @@ Result<void> read_text(std::string_view text, const std::filesystem::path& file,
       ++unseen;
       continue;
     }
-    if (row.name.empty()) row.name = std::to_string(poses.poses.size() + unseen + 1);
+    const bool numbered = row.name.empty();
+    if (numbered) row.name = std::to_string(poses.poses.size() + unseen + 1);
     auto pose = pose_of(row, place, poses.notes);
     if (!pose) return tl::unexpected(pose.error());
+    pose->numbered = numbered;
     poses.poses.push_back(std::move(*pose));
   }
   if (!open.numbers.empty()) return fail(file.string() + ": ends inside a matrix; " + kAccepted);

@@ -15,6 +15,7 @@ namespace orcart {
 struct NamedPose {
   std::string name;  ///< of the row, or its number from 1
   Pose<T, S> X_TS;
+  bool numbered = false;  ///< `name` is its number
 };
 
 struct PosesFile {
@@ -23,7 +24,7 @@ struct PosesFile {
 };
 
 /// A file, or a folder of such files in the order of their names. A row has an optional name or time stamp
-/// and 12 or 16 numbers, parted by commas or blanks; a matrix may also stand on three or four lines of four
+/// and 12 or 16 numbers, parted by commas or blanks; a matrix may also stand on four lines of four
 /// numbers. Rotations are made exact and told up to a deviation of 0.01, refused beyond; translations that
 /// can only be metres are refused; rows with NaN, which no tool was seen in, are left out and told.
 Result<PosesFile> read_poses(const std::filesystem::path& file);

@@ -47,6 +47,38 @@ bool all_named(const std::vector<NamedPoint>& points, const std::vector<NamedPoi
                      [&](const NamedPoint& p) { return find(among, p.name) != nullptr; });
 }
 
+/// The names of `points` that the file gave, and not one of `among` has; numbers are no names.
+std::vector<std::string> without_namesake(const std::vector<NamedPoint>& points,
+                                          const std::vector<NamedPoint>& among) {
+  std::vector<std::string> names;
+  for (const NamedPoint& p : points) {
+    const NamedPoint* other = find(among, p.name);
+    if (p.numbered || other == nullptr || other->numbered) names.push_back(p.name);
+  }
+  return names;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "\"" : ", \"") + name + "\"";
+  return list;
+}
+
+/// One misspelt name must not throw all others together in another order.
+Result<Pairing> pairing_told_by(const RegistrationTask& task, std::vector<std::string>& notes) {
+  const auto fixed = without_namesake(task.fixed, task.moving),
+             moving = without_namesake(task.moving, task.fixed);
+  if (fixed.empty() || moving.empty()) return Pairing::by_name;
+  if (fixed.size() < task.fixed.size())
+    return fail("some names are alike on both sides and others are not: fiducials " + listed(fixed) +
+                ", measured " + listed(moving) + "; names alike, or --order given, are accepted");
+  const auto named = [](const NamedPoint& p) { return !p.numbered; };
+  if (std::any_of(task.fixed.begin(), task.fixed.end(), named) &&
+      std::any_of(task.moving.begin(), task.moving.end(), named))
+    notes.emplace_back("no name is alike on both sides: the points are paired in the order given");
+  return Pairing::by_order;
+}
+
 /// A fiducial that was not touched is left out where every touched one has its namesake.
 Result<Pairs> by_name(const RegistrationTask& task, std::vector<std::string>& notes) {
   Pairs pairs;
@@ -62,6 +94,9 @@ Result<Pairs> by_name(const RegistrationTask& task, std::vector<std::string>& no
                   "\" was not measured; a point of that name, or --order, is accepted");
     pairs.add(fixed, *moving);
   }
+  for (const NamedPoint& moving : task.moving)
+    if (find(task.fixed, moving.name) == nullptr)
+      notes.push_back("the measured point \"" + moving.name + "\" is no fiducial's and is left out");
   return pairs;
 }
 
@@ -91,8 +126,9 @@ Result<Pairs> by_distances(const RegistrationTask& task) {
 }
 
 Result<Pairs> pair_up(const RegistrationTask& task, std::vector<std::string>& notes) {
-  const bool named = all_named(task.fixed, task.moving) || all_named(task.moving, task.fixed);
-  switch (task.pairing.value_or(named ? Pairing::by_name : Pairing::by_order)) {
+  const auto pairing = task.pairing ? Result<Pairing>(*task.pairing) : pairing_told_by(task, notes);
+  if (!pairing) return tl::unexpected(pairing.error());
+  switch (*pairing) {
     case Pairing::by_name:
       return by_name(task, notes);
     case Pairing::by_order:
@@ -143,7 +179,13 @@ void take_outlier(Pairs& pairs, Registration& result) {
       second = std::min(second, fit->fre_mm);
     }
   }
-  if (best > 0.4 * whole->fre_mm || second < 1.8 * best) return;
+  if (best > 0.4 * whole->fre_mm || second < 1.8 * best) {
+    result.notes.push_back(json::format(
+        "FRE %.2f mm is large against the declared error of %.2f mm, and no one point explains it; the "
+        "expected error is the declared one's",
+        whole->fre_mm, result.fle_mm));
+    return;
+  }
   const auto fit = pairs.without(worst).fit();
   result.outlier = pairs.fixed_names[worst];
   result.outlier_mm =
@@ -152,6 +194,16 @@ void take_outlier(Pairs& pairs, Registration& result) {
       json::format("\"%s\" lies %.1f mm off and was left out: FRE %.2f mm with it, %.2f mm without",
                    result.outlier.c_str(), result.outlier_mm, whole->fre_mm, best));
   pairs = pairs.without(worst);
+}
+
+/// Far beyond what touching makes: points that are not each other's partners, or an error declared too small.
+Result<void> check_fre(double fre_mm, const RegistrationTask& task) {
+  constexpr double kMost = 10;
+  if (fre_mm <= kMost * task.fle_mm) return {};
+  return fail(json::format(
+      "FRE %.1f mm is over ten times the declared error of %.2f mm: are two names or places exchanged? "
+      "--order unknown finds the partners; where touching is so coarse, a larger --fle is accepted",
+      fre_mm, task.fle_mm));
 }
 
 void measure_shape(const Pairs& pairs, Registration& result) {
@@ -164,23 +216,25 @@ void measure_shape(const Pairs& pairs, Registration& result) {
   result.axes = solver.eigenvectors();
   const Eigen::Vector3d& along = solver.eigenvalues();
   for (Eigen::Index k = 0; k < 3; ++k) result.spread2_mm2[k] = along.sum() - along[k];
-  const double length = std::sqrt(along[2]), width = std::sqrt(along[1]),
+}
+
+/// Empty where the points lie neither on one line nor in one plane.
+std::string shape_of(const Registration& r) {
+  const Eigen::Vector3d along = 0.5 * r.spread2_mm2.sum() * Eigen::Vector3d::Ones() - r.spread2_mm2;
+  const double length = std::sqrt(along[2]), width = std::sqrt(std::max(0.0, along[1])),
                depth = std::sqrt(std::max(0.0, along[0]));
-  if (width < 0.15 * length) {
-    const Eigen::Vector3d beside = result.centroid_mm + 50 * result.axes.col(1);
-    result.notes.push_back(json::format(
+  const double among = predicted_tre_mm(r, r.centroid_mm);
+  if (width < 0.15 * length)
+    return json::format(
         "the points lie nearly on one line (%.0f mm long, %.1f mm wide): 50 mm beside it the expected error "
-        "is "
-        "%.1f mm, on it %.1f mm; add one beside the line",
-        length, width, predicted_tre_mm(result, beside), predicted_tre_mm(result, result.centroid_mm)));
-  } else if (depth < 0.1 * width) {
-    const Eigen::Vector3d above = result.centroid_mm + 50 * result.axes.col(0);
-    result.notes.push_back(
-        json::format("the points lie nearly in one plane (%.1f mm deep): 50 mm above it the expected error "
-                     "is %.1f mm, in it "
-                     "%.1f mm, and only the guard against reflections tells its two sides apart",
-                     depth, predicted_tre_mm(result, above), predicted_tre_mm(result, result.centroid_mm)));
-  }
+        "is %.1f mm, on it %.1f mm; add one beside the line",
+        length, width, predicted_tre_mm(r, r.centroid_mm + 50 * r.axes.col(1)), among);
+  if (depth < 0.1 * width)
+    return json::format(
+        "the points lie nearly in one plane (%.1f mm deep): 50 mm above it the expected error is %.1f mm, in "
+        "it %.1f mm, and only the guard against reflections tells its two sides apart",
+        depth, predicted_tre_mm(r, r.centroid_mm + 50 * r.axes.col(0)), among);
+  return {};
 }
 
 }  // namespace
@@ -194,6 +248,7 @@ Result<Registration> register_points(const RegistrationTask& task) {
   take_outlier(*pairs, result);
   const auto fit = pairs->fit();
   if (!fit) return tl::unexpected(fit.error());
+  if (auto near = check_fre(fit->fre_mm, task); !near) return tl::unexpected(near.error());
   result.X_MR = {.rotation = fit->rotation, .translation_mm = fit->translation_mm};
   result.fre_mm = fit->fre_mm;
   for (std::size_t i = 0; i < pairs->fixed_mm.size(); ++i)
@@ -205,7 +260,14 @@ Result<Registration> register_points(const RegistrationTask& task) {
          .error_mm =
              (fit->rotation * pairs->moving_mm[i] + fit->translation_mm - pairs->fixed_mm[i]).norm()});
   measure_shape(*pairs, result);
+  tell_shape(result);
   return result;
+}
+
+void tell_shape(Registration& registration) {
+  if (!registration.shape.empty()) std::erase(registration.notes, registration.shape);
+  registration.shape = shape_of(registration);
+  if (!registration.shape.empty()) registration.notes.push_back(registration.shape);
 }
 
 TwistCovariance twist_covariance(const Registration& registration) {

@@ -15,7 +15,8 @@ enum class Pairing { by_name, by_order, unknown };
 struct RegistrationTask {
   std::vector<NamedPoint> fixed;   ///< in M
   std::vector<NamedPoint> moving;  ///< in R
-  std::optional<Pairing> pairing;  ///< unset: by name where all names of one side are there, else by order
+  /// Unset: by name where all names of one side are there, by order where none is alike.
+  std::optional<Pairing> pairing;
   double fle_mm = 0.5;  ///< fiducial localisation error, RMS, declared: never taken from this patient's FRE
 };
 
@@ -39,12 +40,18 @@ struct Registration {
   /// Of the pose's turn and shift about centroid_mm, in M; where surface points were used beside the
   /// fiducials.
   std::optional<Eigen::Matrix<double, 6, 6>> pose_covariance;
+  std::string shape;               ///< of the notes, what a flat or narrow set means; empty: it is neither
   std::vector<std::string> notes;  ///< e.g. what a nearly flat set does to the error beside it
 };
 
-/// Refuses fewer than three pairs, points on one line, names that do not pair up, and sets of unlike size
-/// (metres).
+/// Refuses fewer than three pairs, points on one line, names that do not pair up (and, unless `pairing` says
+/// so, lists of which only some names are alike), sets of unlike size (metres), and an FRE of over ten times
+/// the declared FLE.
 Result<Registration> register_points(const RegistrationTask& task);
+
+/// Puts among the notes what a flat or narrow set does to the error beside it, in place of what was told
+/// before; for whoever changes the registration.
+void tell_shape(Registration& registration);
 
 /// Of X_MR: a twist in R (mm, rad), from the declared fiducial error.
 TwistCovariance twist_covariance(const Registration& registration);

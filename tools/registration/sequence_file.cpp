@@ -152,7 +152,7 @@ Result<std::vector<NamedPoint>> stylus_rests(const SequenceFile& sequence, const
                 " and " + names.reference + "; a rest takes " + std::to_string(search.frames));
   std::vector<NamedPoint> rests;
   for (const Rest& rest : rests_of(tips, search))
-    rests.push_back({.name = std::to_string(rests.size() + 1), .mm = rest.mean_mm});
+    rests.push_back({.name = std::to_string(rests.size() + 1), .mm = rest.mean_mm, .numbered = true});
   return rests;
 }
 

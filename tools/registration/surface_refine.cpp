@@ -213,6 +213,7 @@ Result<SurfaceRefinement> refine_on_surface(Registration& registration, const Tr
   }
   registration.fre_mm = std::sqrt(sum2 / static_cast<double>(registration.points.size()));
   registration.pose_covariance = normal.left.inverse();
+  tell_shape(registration);
   return result;
 }
 

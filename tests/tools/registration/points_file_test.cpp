@@ -16,6 +16,8 @@ TEST(PointsFile, ReadsRowsWithAndWithoutNames) {
   EXPECT_EQ(read_points(named.path()).value()[0].name, "nasion");
   const TextFile plain("b.txt", "37.82 52.99 -191.00\n310.90 70.36 -196.50\n");
   EXPECT_EQ(read_points(plain.path()).value()[1].mm, Eigen::Vector3d(310.90, 70.36, -196.50));
+  EXPECT_FALSE(read_points(named.path()).value()[0].numbered);
+  EXPECT_TRUE(read_points(plain.path()).value()[1].numbered);
 }
 
 TEST(PointsFile, ObeysWhatSlicerStates) {
@@ -122,6 +124,7 @@ TEST(PointsFile, ReadsUnitsSeveralListsAndEscapesOfMarkups) {
   ASSERT_EQ(points->size(), 2U);
   EXPECT_EQ(points->at(0).name, "\xC3\xA9\xF0\x9F\x98\x80\ttip");
   EXPECT_EQ(points->at(1).mm, Eigen::Vector3d(1, 2, 3));
+  EXPECT_FALSE(points->at(1).numbered);
   const TextFile mixed("b.mrk.json", R"({"markups": [
       {"coordinateSystem": "LPS", "controlPoints": [{"position": [1, 2, 3]}]},
       {"coordinateSystem": "RAS", "controlPoints": [{"position": [1, 2, 3]}]}]})");

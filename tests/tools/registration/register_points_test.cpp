@@ -1,6 +1,7 @@
 // Registration from points: order, outliers, shapes, and the predicted error against simulation.
 #include "tools/registration/register_points.hpp"
 
+#include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -81,6 +82,54 @@ TEST(RegisterPoints, NamesOneOutlierAndLeavesItOut) {
   EXPECT_EQ(r->outlier, "4");
   EXPECT_NEAR(r->outlier_mm, 12, 1e-6);
   EXPECT_LT(r->fre_mm, 1e-9);
+}
+
+TEST(RegisterPoints, RefusesExchangedNames) {
+  auto moving = measured(kFiducials);
+  std::swap(moving[0].name, moving[3].name);
+  const auto r = register_points({.fixed = kFiducials, .moving = moving});
+  ASSERT_FALSE(r);
+  EXPECT_NE(r.error().message.find("over ten times the declared error of 0.50 mm"), std::string::npos);
+}
+
+TEST(RegisterPoints, TellsALargeErrorThatNoOnePointExplains) {
+  auto moving = measured(kFiducials);
+  moving[1].mm += Eigen::Vector3d(0, 4, 0);
+  moving[3].mm += Eigen::Vector3d(0, 0, 4);
+  const auto r = register_points({.fixed = kFiducials, .moving = moving});
+  ASSERT_TRUE(r) << r.error().message;
+  EXPECT_TRUE(r->outlier.empty());
+  ASSERT_EQ(r->notes.size(), 1U);
+  EXPECT_NE(r->notes[0].find("no one point explains it"), std::string::npos);
+}
+
+TEST(RegisterPoints, OneMisspeltNameIsRefusedAndNamed) {
+  auto moving = measured(kFiducials);
+  std::rotate(moving.begin(), moving.begin() + 2, moving.end());
+  moving[1].name = "nasoin";
+  const auto r = register_points({.fixed = kFiducials, .moving = moving});
+  ASSERT_FALSE(r);
+  EXPECT_NE(r.error().message.find("fiducials \"4\", measured \"nasoin\""), std::string::npos);
+}
+
+TEST(RegisterPoints, NamesOfWhichNoneIsAlikeLeaveTheOrderAndAreTold) {
+  auto moving = measured(kFiducials);
+  for (NamedPoint& p : moving) p.name = "touch " + p.name;
+  const auto r = register_points({.fixed = kFiducials, .moving = moving});
+  ASSERT_TRUE(r) << r.error().message;
+  EXPECT_LT(r->fre_mm, 1e-9);
+  EXPECT_NE(r->notes.at(0).find("in the order given"), std::string::npos);
+}
+
+TEST(RegisterPoints, NumbersOfUnnamedPointsAreNoNames) {
+  auto fixed = kFiducials, moving = measured(kFiducials);
+  for (auto* points : {&fixed, &moving})
+    for (NamedPoint& p : *points) p.numbered = true;
+  EXPECT_LT(register_points({.fixed = fixed, .moving = moving}).value().fre_mm, 1e-9);
+  moving.pop_back();
+  const auto r = register_points({.fixed = fixed, .moving = moving});
+  ASSERT_FALSE(r);
+  EXPECT_NE(r.error().message.find("6 fiducials and 5 measured points"), std::string::npos);
 }
 
 TEST(RegisterPoints, SaysThatFourPointsCannotNameAnOutlier) {

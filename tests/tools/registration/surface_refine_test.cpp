@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "tools/registration/json_text.hpp"
+
 namespace orcart {
 namespace {
 
@@ -114,6 +116,29 @@ TEST(SurfaceRefine, RefusesFewPointsAndPointsOfAnotherSpace) {
   EXPECT_NE(
       refine_on_surface(*registration, ellipsoid(), s.surface).error().message.find("reference's space"),
       std::string::npos);
+}
+
+TEST(SurfaceRefine, TellsAnewWhatANarrowSetMeans) {
+  std::mt19937 random(6);
+  Scene s = scene(random);
+  for (auto* side : {&s.fiducials.fixed, &s.fiducials.moving}) side->resize(3);
+  const std::vector<Eigen::Vector3d> line{{60, 0, -60}, {60, 3, 0}, {60, 0, 60}};
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    s.fiducials.fixed[i].mm = line[i];
+    s.fiducials.moving[i].mm = (kTruth.inverse() * Point<M>{line[i]}).mm;
+  }
+  auto registration = register_points(s.fiducials);
+  ASSERT_TRUE(registration) << registration.error().message;
+  const std::vector<std::string> before = registration->notes;
+  ASSERT_EQ(before.size(), 1U);
+  ASSERT_TRUE(refine_on_surface(*registration, ellipsoid(), s.surface));
+  ASSERT_EQ(registration->notes.size(), 1U);
+  EXPECT_NE(registration->notes[0], before[0]);
+  const Eigen::Vector3d beside = registration->centroid_mm + 50 * registration->axes.col(1);
+  EXPECT_NE(registration->notes[0].find(
+                json::format("the expected error is %.1f mm", predicted_tre_mm(*registration, beside))),
+            std::string::npos)
+      << registration->notes[0];
 }
 
 TEST(SurfaceTre, IsLeastAmidTheFiducialsAndMostFarFromThem) {
