@@ -98,7 +98,9 @@ void StartSequence::on_error(std::uint8_t code) noexcept {
     case Step::version:
       return go(Step::rate);
     case Step::rate:
-      return go(Step::list_old);  // a device of one rate
+      return go(knows_frames() ? Step::share : Step::list_old);  // a device of one rate
+    case Step::share:
+      return go(Step::list_old);  // a device that reports every frame
     case Step::initialise_wired:
       return next_wired(Step::initialise_wired, Step::list_new_again);  // another port's tool may be broken
     case Step::locate:
@@ -185,6 +187,8 @@ void StartSequence::on_okay() noexcept {
     case Step::version:
       return on_error(0);  // no answer to a question
     case Step::rate:
+      return go(knows_frames() ? Step::share : Step::list_old);
+    case Step::share:
       return go(Step::list_old);
     case Step::beep:
       return go(Step::finished);

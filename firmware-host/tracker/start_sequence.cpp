@@ -11,7 +11,8 @@ constexpr Nanos kSlowProbe = 1s;
 constexpr Nanos kFirstInit = 5s;  ///< after power-on
 constexpr Nanos kSettle = 100ms;  ///< NDI asks for it after INIT and COMM
 constexpr Nanos kPatience = 2s;
-constexpr Nanos kWiredPatience = 6s;  ///< an Aurora reads a tool's memory for 2.6 s
+constexpr std::uint32_t kEveryFrame = 2;  ///< of Track Frequency: 1/3, 1/2, 1/1 of the Frame Frequency
+constexpr Nanos kWiredPatience = 6s;      ///< an Aurora reads a tool's memory for 2.6 s
 
 }  // namespace
 
@@ -96,6 +97,8 @@ StartAction StartSequence::ask_or_tell() const noexcept {
       return send(ndi::ask_version(), kPatience);
     case Step::rate:
       return set_rate();
+    case Step::share:
+      return send(ndi::set_parameter("Param.Tracking.Track Frequency", kEveryFrame), kPatience);
     default:
       return send(ndi::beep(settings_.beeps_when_tracking), kPatience);
   }
@@ -145,6 +148,7 @@ StartAction StartSequence::action() const noexcept {
     case Step::firmware:
     case Step::version:
     case Step::rate:
+    case Step::share:
     case Step::beep:
       return ask_or_tell();
     case Step::request:

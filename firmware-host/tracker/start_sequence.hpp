@@ -42,9 +42,10 @@ class ShortText {
   std::size_t size_ = 0;
 };
 
-/// Probe at the rate last used, then at 9600, then by a break; COMM; ask what device this is; set its rate;
-/// free old handles; request, upload, initialise, describe and enable each wireless tool; initialise, find
-/// and enable wired ones; start tracking. Order as PLUS has it. One thread; allocates nothing.
+/// Probe at the rate last used, then at 9600, then by a break; COMM; ask what device this is; set its rate
+/// (and that every frame is reported, where another host may have said otherwise); free old handles; request,
+/// upload, initialise, describe and enable each wireless tool; initialise, find and enable wired ones; start
+/// tracking. Order as PLUS has it. One thread; allocates nothing.
 class StartSequence {
  public:
   explicit StartSequence(const NdiSettings& settings) noexcept;
@@ -92,6 +93,7 @@ class StartSequence {
     firmware,
     version,
     rate,
+    share,
     list_old,
     free_old,
     request,

@@ -26,6 +26,8 @@ class EmulatorPort {
   /// 0 where there is nothing, or nobody.
   virtual std::size_t read(std::span<std::byte> into) = 0;
   virtual void write(std::span<const std::byte> bytes) = 0;
+  /// The client is owed nothing now: one that has said that it will say no more may be let go.
+  virtual void owe_nothing() {}
   /// The baud rate that the client has set; 0 where it cannot be told, or nobody is there.
   virtual std::uint32_t baud() = 0;
   /// As if the cable were pulled: whoever is there loses it, and nobody can come in. Again: no effect.

@@ -27,6 +27,7 @@ void EmulatorServer::step(Nanos longest) {
     port_.write(std::span{buffer_}.first(count));
     bytes_sent_ += count;
   }
+  if (!device_.owes_a_reply()) port_.owe_nothing();
 }
 
 void EmulatorServer::watch_for_break(Instant now) {

@@ -10,7 +10,8 @@
 namespace orcart {
 
 /// Serves one client of a socket that listens already; a second one is let in and put out at once, so that it
-/// need not wait for an answer. One thread.
+/// need not wait for an answer. A client that has closed its own direction only still gets what it asked for,
+/// unless another is at the door. One thread.
 class ListeningPort final : public EmulatorPort {
  public:
   /// `again` listens at the same place once more, after the cable was out.
@@ -23,6 +24,7 @@ class ListeningPort final : public EmulatorPort {
   bool take_arrival() override { return std::exchange(arrived_, false); }
   std::size_t read(std::span<std::byte> into) override;
   void write(std::span<const std::byte> bytes) override;
+  void owe_nothing() override;
   std::uint32_t baud() override { return 0; }
   void cut() override;
   void mend() override;
@@ -36,6 +38,7 @@ class ListeningPort final : public EmulatorPort {
   std::string name_;
   Listen again_;
   bool arrived_ = false;
+  bool said_all_ = false;  ///< the client; it may still listen
 };
 
 }  // namespace orcart

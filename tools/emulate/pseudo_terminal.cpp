@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <stdlib.h>
+#include <termios.h>
 
 #include <algorithm>
 #include <array>
@@ -23,12 +24,22 @@ struct Opened {
   std::string device;
 };
 
+/// Made for people, a new terminal echoes, which a tracker would take for commands and answer; and its
+/// controller does not tell that nobody has it open before somebody had. The rate stays: 9600 would be news.
+bool make_raw_and_leave(const char* device) {
+  const FileDescriptor terminal(::open(device, O_RDWR | O_NOCTTY | O_CLOEXEC));
+  termios line{};
+  if (!terminal.valid() || ::tcgetattr(terminal.get(), &line) != 0) return false;
+  line.c_iflag = line.c_oflag = line.c_lflag = 0;
+  return ::tcsetattr(terminal.get(), TCSANOW, &line) == 0;
+}
+
 Result<Opened> open_controller() {
   FileDescriptor controller(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   std::array<char, 128> name{};
-  const bool made = controller.valid() && ::grantpt(controller.get()) == 0 &&
-                    ::unlockpt(controller.get()) == 0 &&
-                    ::ptsname_r(controller.get(), name.data(), name.size()) == 0;
+  const bool made =
+      controller.valid() && ::grantpt(controller.get()) == 0 && ::unlockpt(controller.get()) == 0 &&
+      ::ptsname_r(controller.get(), name.data(), name.size()) == 0 && make_raw_and_leave(name.data());
   if (!made)
     return fail("a pseudo-terminal cannot be made: " + std::string(std::strerror(errno)) +
                 "; a mounted /dev/pts is wanted");

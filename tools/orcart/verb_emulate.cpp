@@ -119,7 +119,7 @@ void add_emulate(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   tracker
       ->add_option("--link", arguments->link, "a symbolic link to the pseudo-terminal, for a name that stays")
-      ->excludes("--tcp");
+      ->needs("--pty");
   tracker
       ->add_option(
           "--model", arguments->model,

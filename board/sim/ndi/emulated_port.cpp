@@ -62,7 +62,10 @@ NdiError EmulatedPort::initialise() noexcept {
 
 NdiError EmulatedPort::enable(char priority) noexcept {
   if (priority != 'S' && priority != 'D' && priority != 'B') return NdiError::no_such_priority;
-  if (!initialised_) return NdiError::not_initialised_port;
+  if (!occupied_) return NdiError::not_initialised_port;
+  if (!initialised_) {
+    if (const NdiError error = initialise(); error != NdiError::none) return error;
+  }
   enabled_ = reported_ = true;
   return NdiError::none;
 }

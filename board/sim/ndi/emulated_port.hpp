@@ -57,6 +57,7 @@ class EmulatedPort {
   NdiError write(std::size_t address, std::span<const std::byte> bytes) noexcept;
   /// Reads the definition; refused where its checksum or its number of markers is wrong.
   NdiError initialise() noexcept;
+  /// A port that holds a tool is initialised by the way.
   NdiError enable(char priority) noexcept;
   NdiError disable() noexcept;
   /// What may happen to a tool behind the host's back.

@@ -1,5 +1,6 @@
 // The emulated tracker's commands about the system as a whole.
 #include <algorithm>
+#include <cmath>
 
 #include "board/sim/ndi/ndi_emulator.hpp"
 
@@ -118,8 +119,12 @@ NdiError NdiEmulator::on_getinfo(std::string_view arguments, const Moment&) noex
 }
 
 NdiError NdiEmulator::on_set(std::string_view arguments, const Moment&) noexcept {
+  const bool frames = arguments.starts_with("Param.Tracking.Frame Frequency=");
+  if (frames && tracking_) return NdiError::wrong_mode;
   const NdiError error = parameters_.set(arguments);
   if (error != NdiError::none) return error;
+  const std::int64_t rate_hz = parameters_.value("Param.Tracking.Frame Frequency");
+  if (frames && rate_hz != std::llround(frame_rate_hz_)) run_frames_at(static_cast<double>(rate_hz));
   if (arguments.starts_with("Param.Simulated Alerts="))
     self_report_.simulate(static_cast<std::uint32_t>(parameters_.value("Param.Simulated Alerts")));
   if (arguments == "Param.Bump Detector.Clear=1") self_report_.clear_bump();
@@ -140,6 +145,8 @@ NdiError NdiEmulator::on_beep(std::string_view arguments, const Moment& moment) 
 
 NdiError NdiEmulator::on_irate(std::string_view arguments, const Moment&) noexcept {
   if (arguments.size() != 1 || !within(arguments[0], '2')) return NdiError::out_of_range;
+  if (model_.has_frames) parameters_.assign("Param.Tracking.Track Frequency", arguments[0] - '0');
+  parameters_.assign("Param.Tracking.Illuminator Rate", arguments[0] - '0');
   return okay();
 }
 

@@ -68,7 +68,9 @@ std::uint32_t NdiEmulator::reported_ports() const noexcept {
 NdiEmulator::Moment NdiEmulator::moment_at(Instant now) const noexcept {
   const auto* frozen = faults_.active(NdiFault::frozen_frame, now, replies_sent_);
   const Instant seen_at = (frozen != nullptr ? frozen->from : now) - settings_.device_latency;
-  return {.now = now, .frame = clock_.newest_at(seen_at)};
+  const std::uint32_t frame = clock_.newest_at(seen_at);
+  const auto each = static_cast<std::uint32_t>(3 - parameters_.value("Param.Tracking.Track Frequency"));
+  return {.now = now, .frame = frame - frame % each};  // one in `each` is reported; all are numbered
 }
 
 std::uint16_t NdiEmulator::system_status(Instant now) const noexcept {

@@ -12,11 +12,16 @@ namespace {
 /// How long after its answer to COMM the device changes the line rate; hosts wait 100 ms.
 constexpr Nanos kSwitchAfter = 5ms;
 
+constexpr char upper(char letter) {
+  return letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
+}
+
 }  // namespace
 
 NdiEmulator::NdiEmulator(const NdiEmulatorSettings& settings, const ToolMotion& motion)
     : settings_(settings),
       motion_(motion),
+      frame_rate_hz_(settings.frame_rate_hz),
       clock_(settings.on_at, settings.frame_phase, settings.frame_rate_hz, settings.clock_drift_ppm),
       model_(description_of(settings.model)),
       parameters_(model_, settings.frame_rate_hz) {}
@@ -103,9 +108,10 @@ NdiError NdiEmulator::objection_to(Mode mode) const noexcept {
 NdiError NdiEmulator::dispatch(const CommandLine& command, const Moment& moment) noexcept {
   if (command.error != NdiError::none) return command.error;
   const auto all = verbs();
-  const auto verb =
-      std::find_if(all.begin(), all.end(), [&](const Verb& v) { return v.name == command.name; });
-  if (verb == all.end() || !model_.knows(command.name)) return NdiError::invalid_command;
+  const auto verb = std::find_if(all.begin(), all.end(), [&](const Verb& v) {
+    return std::ranges::equal(v.name, command.name, {}, {}, upper);  // devices take small letters as well
+  });
+  if (verb == all.end() || !model_.knows(verb->name)) return NdiError::invalid_command;
   const NdiError objection = objection_to(verb->mode);
   return objection != NdiError::none ? objection : (this->*verb->handler)(command.arguments, moment);
 }
@@ -160,12 +166,19 @@ void NdiEmulator::damage(std::span<std::byte> bytes, Instant now) noexcept {
   if (faults_.active(NdiFault::bad_crc, now, reply) != nullptr) bytes[bytes.size() / 2] ^= std::byte{0x10};
 }
 
+void NdiEmulator::run_frames_at(double rate_hz) noexcept {
+  frame_rate_hz_ = rate_hz;
+  clock_ = DeviceClock(settings_.on_at, settings_.frame_phase, rate_hz, settings_.clock_drift_ppm);
+  frame_zero_ = last_bx2_frame_ = 0;
+}
+
 void NdiEmulator::restart(Instant now) noexcept {
   replies_.clear();
   line_size_ = 0;
   line_too_long_ = false;
   for (EmulatedPort& port : ports_) port.release();
   parameters_ = UserParameters(model_, settings_.frame_rate_hz);
+  run_frames_at(settings_.frame_rate_hz);
   port_events_ = 0;
   initialised_ = tracking_ = false;
   baud_ = next_baud_ = 9600;

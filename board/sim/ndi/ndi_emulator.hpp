@@ -62,6 +62,8 @@ class NdiEmulator {
 
   /// When the next reply byte arrives, or the next reset is due; Instant::max() where neither will.
   Instant next_event() const noexcept;
+  /// Whether bytes of a reply are still on their way.
+  bool owes_a_reply() const noexcept { return replies_.next_arrival() != Instant::max(); }
   Instant last_arrival() const noexcept { return replies_.last_taken(); }
   /// The line rate in use at `now`: after COMM the device answers first and then changes it.
   std::uint32_t baud(Instant now) const noexcept { return now < switch_at_ ? baud_ : next_baud_; }
@@ -100,6 +102,8 @@ class NdiEmulator {
   void damage(std::span<std::byte> bytes, Instant now) noexcept;
   void catch_up(Instant now) noexcept;
   void restart(Instant now) noexcept;
+  /// Frames are numbered anew, as if they had come at that rate since the device was switched on.
+  void run_frames_at(double rate_hz) noexcept;
   Nanos byte_time() const noexcept;
   NdiError okay() noexcept;
 
@@ -154,6 +158,7 @@ class NdiEmulator {
 
   NdiEmulatorSettings settings_;
   const ToolMotion& motion_;
+  double frame_rate_hz_;  ///< now; a host may have set another than it was switched on with
   DeviceClock clock_;
   NdiFaultSchedule faults_;
   std::array<EmulatedPort, kMaxPorts> ports_;

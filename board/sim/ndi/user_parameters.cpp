@@ -35,7 +35,7 @@ constexpr auto kRows = std::to_array<Row>({
      "Measurement volumes"},
     {"Param.Tracking.Selected Volume", "", 0, 0, 0, Access::write, "0", "Index of the selected volume"},
     {"Param.Tracking.Frame Frequency", "", 60, 10, 400, Access::write, "", "Frames in a second"},
-    {"Param.Tracking.Track Frequency", "", 0, 0, 2, Access::write, "1/1,1/2,1/3", "Share of frames reported"},
+    {"Param.Tracking.Track Frequency", "", 2, 0, 2, Access::write, "1/3,1/2,1/1", "Share of frames reported"},
     {"Param.Tracking.Sensitivity", "", 4, 1, 7, Access::write, "", "Sensitivity of the sensors"},
     {"Param.Tracking.Illuminator Rate", "", 2, 0, 2, Access::write, "20,30,60", "Illuminator rate"},
     {"Param.Data Averaging.Depth", "", 1, 1, 100, Access::write, "", "Samples averaged"},

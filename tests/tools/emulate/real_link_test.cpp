@@ -1,4 +1,5 @@
 // The Linux links against the emulated tracker behind a real pseudo-terminal and a real TCP port.
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/time.h>
@@ -124,6 +125,7 @@ class PlainClient {
     ::setsockopt(socket_.get(), SOL_SOCKET, SO_RCVTIMEO, &second, sizeof second);
     connected = ::connect(socket_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
   }
+  void say_no_more() { ::shutdown(socket_.get(), SHUT_WR); }
   void say(const std::string& bytes) { ::send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL); }
   /// "gone" where the other side hung up.
   std::string answer() {
@@ -153,6 +155,42 @@ TEST(RealLinks, TheNextClientInheritsNothing) {
   PlainClient second(served);
   second.say("INIT \r");
   EXPECT_EQ(second.answer().substr(0, 4), "OKAY");
+}
+
+// As `printf 'INIT \\r' | nc -N` does.
+TEST(RealLinks, AClientThatClosesItsOwnDirectionStillGetsItsAnswer) {
+  const ServedTracker served(open_tcp_port({.port = 0}).value());
+  for (int client = 0; client < 2; ++client) {
+    PlainClient hurried(served);
+    hurried.say("INIT \r");
+    hurried.say_no_more();
+    EXPECT_EQ(hurried.answer().substr(0, 4), "OKAY");
+    EXPECT_EQ(hurried.answer(), "gone");
+  }
+}
+
+TEST(RealLinks, APseudoTerminalAnswersAProgramThatDoesNotTouchItsSettings) {
+  const ServedTracker served(open_pseudo_terminal().value());
+  const FileDescriptor terminal(::open(served.name.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  ASSERT_TRUE(terminal.valid());
+  ASSERT_EQ(::write(terminal.get(), "INIT \r", 6), 6);
+  RealClock{}.sleep_until(RealClock{}.now() + 300ms);
+  std::string all(1000, '\0');
+  const ssize_t count = ::read(terminal.get(), all.data(), all.size());
+  all.resize(count < 0 ? 0 : static_cast<std::size_t>(count));
+  EXPECT_EQ(all, "OKAYA896\r") << "once, and nothing of what it said itself";
+}
+
+TEST(RealLinks, APseudoTerminalThatNobodyHasOpenedHearsNothing) {
+  const auto port = open_pseudo_terminal().value();
+  const CirclingTools motion;
+  const Instant start = RealClock{}.now();
+  NdiEmulator device({.reset_time = 10ms, .has_line = false, .on_at = start}, motion);
+  device.faults().add({.fault = NdiFault::reset, .from = start + 50ms});
+  EmulatorServer server(device, *port);
+  while (RealClock{}.now() < start + 300ms) server.step(2ms);
+  EXPECT_GT(server.bytes_sent(), 0u) << "it did restart";
+  EXPECT_EQ(server.bytes_received(), 0u);
 }
 
 TEST(RealLinks, ASecondClientIsPutOutAtOnceAndTheFirstGoesOn) {

@@ -92,7 +92,9 @@ TEST(NdiEmulator, LeadsAToolThroughItsLife) {
   const std::string handle = session.upload(definition_of(kMarkers));
   EXPECT_EQ(handle, "01");
   EXPECT_EQ(session.ask("PHSR:02"), "0101001");
-  EXPECT_EQ(session.ask("PENA:01D"), "ERROR0E") << "not initialised yet";
+  EXPECT_EQ(session.ask("PHRQ:*********1****"), "02");
+  EXPECT_EQ(session.ask("PENA:02D"), "ERROR0E") << "nothing is in it";
+  EXPECT_EQ(session.ask("PHF:02"), "OKAY");
   EXPECT_EQ(session.ask("PINIT:01"), "OKAY");
   EXPECT_EQ(session.ask("PHSR:03"), "0101011");
   EXPECT_EQ(session.ask("PHINF:010001"), "02000000            000ABCDEF0111");
@@ -111,6 +113,71 @@ TEST(NdiEmulator, RefusesADamagedDefinition) {
   definition[200] ^= std::byte{1};
   session.upload(definition);
   EXPECT_EQ(session.ask("PINIT:01"), "ERROR40");
+  EXPECT_EQ(session.ask("PENA:01D"), "ERROR40");
+}
+
+// As a public ROS node starts a Vega: no PINIT, Frame and Track Frequency by IRATE, small letters.
+TEST(NdiEmulator, ServesAClientThatEnablesWithoutInitialisingAndWritesSmallLetters) {
+  EmulatedSession session;
+  EXPECT_EQ(session.raw("init \r"), "OKAYA896\r");
+  const auto definition = definition_of(kMarkers);
+  EXPECT_EQ(session.raw("phrq *********1****\r").substr(0, 2), "01");
+  for (std::size_t at = 0; at < 12 * 64; at += 64) {
+    std::string block = "pvwr 01" + EmulatedSession::hex(at, 4);
+    for (std::size_t i = at; i < at + 64; ++i)
+      block += EmulatedSession::hex(i < definition.size() ? std::to_integer<unsigned>(definition[i]) : 0, 2);
+    EXPECT_EQ(session.raw(block + "\r").substr(0, 4), "OKAY");
+  }
+  EXPECT_EQ(session.raw("pena 01D\r").substr(0, 4), "OKAY");
+  const std::string described = session.raw("phinf 010001\r");
+  EXPECT_EQ(described.substr(described.size() - 7, 2), "31");
+  EXPECT_EQ(session.raw("irate 2\r").substr(0, 4), "OKAY");
+  EXPECT_EQ(session.raw("get Param.Tracking.Track Frequency\r").substr(0, 32),
+            "Param.Tracking.Track Frequency=2");
+  EXPECT_EQ(session.raw("tstart \r").substr(0, 4), "OKAY");
+  EXPECT_TRUE(session.raw("bx 1001\r").starts_with("\xC4\xA5"));
+  EXPECT_EQ(session.ask("init:"), "OKAY") << "its CRC is of the small letters";
+}
+
+/// How many frames the emulator measures, and how many of them it reports, in a second.
+struct FramesInASecond {
+  std::uint32_t numbered = 0;
+  int reported = 0;
+};
+FramesInASecond frames_in_a_second(TrackingSession& session) {
+  const auto frame = [&] {
+    const std::string reply = session.ask("TX:0001");
+    session.now -= 1s;  // ask() waits that long
+    return static_cast<std::uint32_t>(std::stoul(reply.substr(63, 8), nullptr, 16));
+  };
+  FramesInASecond told;
+  std::uint32_t last = frame();
+  const std::uint32_t first = last;
+  for (int ms = 0; ms < 1000; ms += 2) {
+    session.now += 2ms;
+    const std::uint32_t now = frame();
+    told.reported += now != last;
+    last = now;
+  }
+  told.numbered = last - first;
+  return told;
+}
+
+TEST(NdiEmulator, MeasuresAtTheRateAndReportsTheShareThatTheHostSets) {
+  TrackingSession session;
+  EXPECT_NEAR(frames_in_a_second(session).reported, 60, 1);
+  EXPECT_NE(session.ask("GETINFO:Param.Tracking.Track Frequency").find(";1/3,1/2,1/1;"), std::string::npos);
+  EXPECT_EQ(session.ask("SET:Param.Tracking.Frame Frequency=20"), "ERROR0C") << "not while it tracks";
+  EXPECT_EQ(session.ask("SET:Param.Tracking.Track Frequency=0"), "OKAY");
+  const FramesInASecond third = frames_in_a_second(session);
+  EXPECT_NEAR(third.reported, 20, 1);
+  EXPECT_NEAR(third.numbered, 60, 3);
+  session.ask("TSTOP:");
+  EXPECT_EQ(session.ask("SET:Param.Tracking.Track Frequency=2"), "OKAY");
+  EXPECT_EQ(session.ask("SET:Param.Tracking.Frame Frequency=20"), "OKAY");
+  session.ask("TSTART:");
+  session.now += 1s;
+  EXPECT_NEAR(frames_in_a_second(session).reported, 20, 1);
 }
 
 TEST(NdiEmulator, RunsOutOfHandles) {
