@@ -70,16 +70,18 @@ Finding camera_on(const OpenDevice& device, const std::string& path) {
 
 }  // namespace
 
+std::optional<Finding> probe_camera(DeviceCalls& calls, const std::string& path) {
+  const auto device = open_camera_node(calls, path);
+  if (device) return camera_on(*device, path);
+  const CameraTrouble& trouble = device.error();
+  if (trouble.fault == PortFault::unsupported && !trouble.captures) return std::nullopt;
+  return lacking("camera", trouble.sentence);
+}
+
 std::vector<Finding> probe_cameras() {
   std::vector<Finding> found;
-  for (const std::string& path : nodes("/dev", "video")) {
-    const auto device = open_camera_node(system_calls(), path);
-    if (device) {
-      found.push_back(camera_on(*device, path));
-    } else if (device.error().fault != PortFault::unsupported) {  // e.g. a camera's second node, for metadata
-      found.push_back(lacking("camera", device.error().sentence));
-    }
-  }
+  for (const std::string& path : nodes("/dev", "video"))
+    if (auto finding = probe_camera(system_calls(), path)) found.push_back(std::move(*finding));
   if (found.empty())
     found.push_back({.area = "camera",
                      .lack = "no camera (/dev/video*) is here",

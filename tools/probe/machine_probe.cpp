@@ -6,11 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
+#include <charconv>
 #include <fstream>
-#include <iterator>
 #include <thread>
 
+#include "board/linux/usb/usb_choice.hpp"
 #include "realtime/kernel/realtime_rights.hpp"
 
 namespace orcart {
@@ -26,17 +26,12 @@ std::string first_line(const std::filesystem::path& file) {
   return line;
 }
 
-struct UsbId {
-  std::string_view vendor, product, name;
-};
-// linux/drivers/usb/serial/ftdi_sio_ids.h
-constexpr std::array<UsbId, 7> kTrackers{{{"0403", "da70", "NDI Host USB Converter (Polaris)"},
-                                          {"0403", "da71", "NDI Spectra SCU"},
-                                          {"0403", "da72", "NDI USB converter"},
-                                          {"0403", "da73", "NDI USB converter"},
-                                          {"0403", "da74", "NDI Aurora SCU"},
-                                          {"23f2", "0003", "NDI EMGUIDE GEMINI"},
-                                          {"0403", "6001", "FT232 serial bridge (perhaps a tracker)"}}};
+std::uint16_t usb_number(const std::filesystem::path& file) {
+  const std::string digits = first_line(file);
+  std::uint16_t number = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), number, 16);
+  return number;
+}
 
 bool may_open(const std::filesystem::path& usb_device) {
   const std::string bus = first_line(usb_device / "busnum"), number = first_line(usb_device / "devnum");
@@ -68,14 +63,15 @@ std::vector<Finding> probe_trackers(const std::filesystem::path& root) {
     devices.push_back(entry.path());
   std::ranges::sort(devices);
   for (const auto& device : devices) {
-    const std::string vendor = first_line(device / "idVendor"), product = first_line(device / "idProduct");
-    const auto* known = std::ranges::find_if(
-        kTrackers, [&](const UsbId& id) { return id.vendor == vendor && id.product == product; });
-    if (known == kTrackers.end()) continue;
-    Finding finding{.area = "tracker", .name = std::string(known->name)};
+    const std::uint16_t vendor = usb_number(device / "idVendor"), product = usb_number(device / "idProduct");
+    const std::string_view known = usb_name_of(vendor, product);
+    if (known.empty()) continue;
+    Finding finding{.area = "tracker", .name = std::string(known)};
+    if (!is_ndi(vendor, product)) finding.name += " (a serial bridge, perhaps a tracker's)";
     const std::string serial = first_line(device / "serial");
     std::string where = "USB ";
-    where.append(vendor).append(":").append(product).append(", port = \"");
+    where.append(first_line(device / "idVendor")).append(":").append(first_line(device / "idProduct"));
+    where.append(", port = \"");
     where.append(device.filename().string()).append("\"");
     if (!serial.empty()) where.append(", serial = \"").append(serial).append("\"");
     finding.details.push_back(where);

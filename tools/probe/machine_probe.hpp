@@ -17,7 +17,8 @@ struct ProcessRights {
 };
 ProcessRights rights_of_this_process();
 
-/// NDI's own USB ids and plain FTDI bridges below `root`/sys/bus/usb, with serial number and port path.
+/// What orcartd opens, NDI's own USB ids and plain FTDI bridges, below `root`/sys/bus/usb, with serial number
+/// and port path.
 std::vector<Finding> probe_trackers(const std::filesystem::path& root);
 /// PREEMPT_RT or not, isolated processors, frequency governor, rights to lock memory and to SCHED_FIFO.
 std::vector<Finding> probe_system(const std::filesystem::path& root, const ProcessRights& rights);

@@ -28,15 +28,6 @@ using Plane = Owned<drmModePlane, drmModeFreePlane>;
 using Properties = Owned<drmModeObjectProperties, drmModeFreeObjectProperties>;
 using Property = Owned<drmModePropertyRes, drmModeFreeProperty>;
 
-double refresh_of(const drmModeModeInfo& mode) {
-  const double pixels = double(mode.htotal) * mode.vtotal;
-  if (pixels <= 0 || mode.clock == 0) return mode.vrefresh;
-  double hz = mode.clock * 1000.0 / pixels;
-  if ((mode.flags & DRM_MODE_FLAG_INTERLACE) != 0) hz *= 2;
-  if ((mode.flags & DRM_MODE_FLAG_DBLSCAN) != 0) hz /= 2;
-  return hz;
-}
-
 std::string name_of(const drmModeConnector& connector) {
   const char* type = drmModeGetConnectorTypeName(connector.connector_type);
   return std::string(type == nullptr ? "Unknown" : type) + "-" + std::to_string(connector.connector_type_id);
@@ -114,14 +105,16 @@ Result<DrmPipe> pipe_for(int card, const PanelWish& wish) {
   if (!choice) return tl::unexpected(choice.error());
   const Resources resources(drmModeGetResources(card));
   const Connector connector(drmModeGetConnectorCurrent(card, offered[choice->connector].id));
-  const auto mode = static_cast<int>(choice->mode);
-  if (!resources || !connector || mode >= connector->count_modes)
+  if (!resources || !connector)
+    return fail("panel " + wish.device + " changed while it was asked; try again");
+  const std::vector<drmModeModeInfo> modes = usable_modes(*connector);
+  if (choice->mode >= modes.size())
     return fail("panel " + wish.device + " changed while it was asked; try again");
   const std::size_t crtc = crtc_for(card, *resources, *connector);
   if (crtc >= static_cast<std::size_t>(resources->count_crtcs))
     return fail("panel " + wish.device + " has no free pipe for " + offered[choice->connector].name);
   DrmPipe pipe{.connector = connector->connector_id, .crtc = resources->crtcs[crtc]};
-  pipe.mode = connector->modes[mode];
+  pipe.mode = modes[choice->mode];
   pipe.plane = primary_plane_of(card, crtc);
   if (pipe.plane == 0) return fail("panel " + wish.device + " has no primary plane for its pipe");
   find_properties(card, pipe);
@@ -155,6 +148,20 @@ Result<std::string> card_for(const PanelWish& wish) {
 
 }  // namespace
 
+double refresh_of(const drmModeModeInfo& mode) noexcept {
+  const double pixels = double(mode.htotal) * mode.vtotal;
+  if (pixels <= 0 || mode.clock == 0) return mode.vrefresh > 0 ? mode.vrefresh : 60;
+  const int scans = (mode.flags & DRM_MODE_FLAG_DBLSCAN) != 0 ? 2 : 1;
+  return mode.clock * 1000.0 / pixels / scans / std::max<int>(1, mode.vscan);
+}
+
+std::vector<drmModeModeInfo> usable_modes(const drmModeConnector& connector) {
+  std::vector<drmModeModeInfo> usable;
+  for (int m = 0; m < connector.count_modes; ++m)
+    if ((connector.modes[m].flags & DRM_MODE_FLAG_INTERLACE) == 0) usable.push_back(connector.modes[m]);
+  return usable;
+}
+
 std::vector<std::string> card_paths() {
   std::vector<std::string> paths;
   std::error_code error;
@@ -182,8 +189,7 @@ std::vector<DisplayConnector> connectors_of(int card) {
     DisplayConnector facts{.id = connector->connector_id,
                            .name = name_of(*connector),
                            .connected = connector->connection == DRM_MODE_CONNECTED};
-    for (int m = 0; m < connector->count_modes; ++m) {
-      const drmModeModeInfo& mode = connector->modes[m];
+    for (const drmModeModeInfo& mode : usable_modes(*connector)) {
       facts.modes.push_back(
           {mode.hdisplay, mode.vdisplay, refresh_of(mode), (mode.type & DRM_MODE_TYPE_PREFERRED) != 0});
     }

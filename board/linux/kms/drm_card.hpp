@@ -16,7 +16,11 @@ namespace orcart {
 
 /// Opens a card for asking alone; a sentence where that is refused.
 Result<FileDescriptor> open_card(const std::string& path);
-/// Every connector with its modes; probes, so it takes up to half a second.
+/// Pictures in a second; what the driver says where the timings do not tell.
+double refresh_of(const drmModeModeInfo& mode) noexcept;
+/// In the connector's order, without the interlaced ones, which show half of a picture at a time.
+std::vector<drmModeModeInfo> usable_modes(const drmModeConnector& connector);
+/// Every connector with its usable modes; probes, so it takes up to half a second.
 std::vector<DisplayConnector> connectors_of(int card);
 std::vector<std::string> card_paths();
 

@@ -98,10 +98,9 @@ DrmScanOut::DrmScanOut(const PanelWish& wish, DrmCard card, VirtualTerminal term
       before_(drmModeGetCrtc(card_.descriptor.get(), card_.pipe.crtc), drmModeFreeCrtc) {
   const drmModeModeInfo& mode = card_.pipe.mode;
   const bool swap = swaps_sides(wish.rotation);
-  const double pixels = double(mode.htotal) * mode.vtotal;
   mode_ = {.width_px = swap ? mode.vdisplay : mode.hdisplay,
            .height_px = swap ? mode.hdisplay : mode.vdisplay,
-           .refresh_hz = pixels > 0 && mode.clock > 0 ? mode.clock * 1000.0 / pixels : 60.0};
+           .refresh_hz = refresh_of(mode)};
   drmModeCreatePropertyBlob(card_.descriptor.get(), &mode, sizeof mode, &mode_blob_);
 }
 

@@ -154,7 +154,15 @@ Result<OpenDevice, CameraTrouble> open_camera_node(DeviceCalls& calls, const std
   }
   const std::uint32_t able = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? capability.device_caps
                                                                                    : capability.capabilities;
-  if ((able & V4L2_CAP_VIDEO_CAPTURE) == 0 || (able & V4L2_CAP_STREAMING) == 0) {
+  const bool one_plane = (able & V4L2_CAP_VIDEO_CAPTURE) != 0;
+  if (!one_plane && (able & V4L2_CAP_VIDEO_CAPTURE_MPLANE) != 0 &&
+      (able & V4L2_CAP_VIDEO_OUTPUT_MPLANE) == 0) {  // with an output it is a codec
+    return tl::unexpected(CameraTrouble{PortFault::unsupported,
+                                        device + " captures in several planes only, which orcart does not "
+                                                 "read; a grabber that uvcvideo drives would do",
+                                        true});
+  }
+  if (!one_plane || (able & V4L2_CAP_STREAMING) == 0) {
     return trouble(PortFault::unsupported,
                    device + " does not deliver pictures in one plane by streaming" + remedy(PortFault::io));
   }

@@ -33,6 +33,7 @@ struct CameraAgreement {
 struct CameraTrouble {
   PortFault fault = PortFault::io;
   std::string sentence;
+  bool captures = false;  ///< it is a camera, only none that can be read
 };
 
 /// Opens a node and makes sure that it captures video in one plane. Absent, busy, without permission or

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/board/linux/v4l2/scripted_camera_device.hpp"
 #include "tests/firmware-host/files/temporary_folder.hpp"
 #include "tools/probe/device_probe.hpp"
 
@@ -33,9 +34,21 @@ TEST_F(MachineProbe, FindsTrackersByTheirUsbIds) {
   put("sys/bus/usb/devices/1-3/idProduct", "c31c");
   const auto found = probe_trackers(root());
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].name, "NDI Host USB Converter (Polaris)");
+  EXPECT_EQ(found[0].name, "NDI Host USB Converter");
   EXPECT_EQ(found[0].details[0], "USB 0403:da70, port = \"1-2\", serial = \"P6-00123\"");
   EXPECT_EQ(found[0].lack, "");
+}
+
+TEST_F(MachineProbe, KnowsEveryTrackerAndBridgeThatTheCartOpens) {
+  put("sys/bus/usb/devices/1-2/idVendor", "0403");
+  put("sys/bus/usb/devices/1-2/idProduct", "6015");
+  put("sys/bus/usb/devices/1-3/idVendor", "23f2");
+  put("sys/bus/usb/devices/1-3/idProduct", "0004");
+  const auto found = probe_trackers(root());
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].name, "FTDI FT-X (a serial bridge, perhaps a tracker's)");
+  EXPECT_EQ(found[0].details[0], "USB 0403:6015, port = \"1-2\"");
+  EXPECT_EQ(found[1].name, "NDI tracker");
 }
 
 TEST_F(MachineProbe, SaysWhatToDoWhereThereIsNoTracker) {
@@ -81,6 +94,24 @@ TEST(ProbeReport, TellsLacksWithTheirRemediesAndEscapesNames) {
       "{\"lacks\": 1, \"findings\": [{\"area\": \"camera\", \"name\": \"/dev/video0 \\\"X\\\"\\u000a\", "
       "\"details\": [\"yuyv: 640x480\"], \"lack\": \"\", \"next\": \"\"}, {\"area\": \"panel\", \"name\": "
       "\"\", \"details\": [], \"lack\": \"no panel\", \"next\": \"plug one in\"}]}\n");
+}
+
+TEST(DeviceProbe, NamesACameraOfSeveralPlanesAsALackAndPassesOverWhatIsNone) {
+  SimulatedClock clock;
+  ScriptedCameraDevice device(clock);
+  device.capabilities = V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING;
+  const auto planes = probe_camera(device, "/dev/video0");
+  ASSERT_TRUE(planes);
+  EXPECT_EQ(planes->lack, "/dev/video0 captures in several planes only, which orcart does not read");
+  EXPECT_EQ(planes->next, "a grabber that uvcvideo drives would do");
+  device.capabilities = V4L2_CAP_META_CAPTURE | V4L2_CAP_STREAMING;
+  EXPECT_FALSE(probe_camera(device, "/dev/video1")) << "a camera's second node";
+  device.capabilities = V4L2_CAP_VIDEO_M2M_MPLANE | V4L2_CAP_STREAMING;
+  EXPECT_FALSE(probe_camera(device, "/dev/video2")) << "a codec";
+  device.capabilities = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING;
+  const auto whole = probe_camera(device, "/dev/video3");
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->lack, "");
 }
 
 TEST(DeviceProbe, FindsOrMissesEveryKindOnThisMachine) {

@@ -271,6 +271,8 @@ TEST_F(V4l2FrameSourceTest, RefusesInOneSentenceWithTheRemedy) {
             std::string::npos);
   device.capabilities = V4L2_CAP_VIDEO_OUTPUT;
   EXPECT_NE(refusal(kSmall).find("does not deliver pictures"), std::string::npos);
+  device.capabilities = V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING;
+  EXPECT_NE(refusal(kSmall).find("in several planes only"), std::string::npos);
   EXPECT_EQ(device.opened, device.closed) << "a refusal leaves nothing open";
   EXPECT_TRUE(device.mapped.empty());
 }
