@@ -19,13 +19,13 @@ class TurnCheck {
  public:
   static constexpr std::size_t kLooked = 15;  ///< the newest pictures that tell both
   static constexpr std::size_t kEnough = 12;  ///< of them must agree with each other
-  static constexpr Nanos kForgotten = 2s;     ///< without any: it begins anew
+  static constexpr Nanos kForgotten = 2s;     ///< after so long without any they are counted anew
 
   /// `most_rad`: further apart is another turn.
   explicit TurnCheck(double most_rad) : most_rad_(most_rad) {}
 
   void compare(Instant at, double followed_rad, double by_notch_rad) noexcept {
-    if (size_ > 0 && at - newest_ > kForgotten) forget();
+    if (size_ > 0 && at - newest_ > kForgotten) next_ = size_ = 0;
     newest_ = at;
     ring_[next_] = std::remainder(by_notch_rad - followed_rad, 2 * std::numbers::pi);
     next_ = (next_ + 1) % kLooked;

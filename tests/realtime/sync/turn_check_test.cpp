@@ -55,6 +55,19 @@ TEST_F(TurnCheckTest, DoesNotAddUpPicturesThatLieFarApart) {
   EXPECT_FALSE(check.differs());
 }
 
+TEST_F(TurnCheckTest, AnAlarmOutlastsAPause) {
+  pictures(15, 5);
+  ASSERT_TRUE(check.differs());
+  ms += 2100;  // withdrawn and wiped
+  pictures(11, 5);
+  EXPECT_TRUE(check.differs());
+  ms += 2100;
+  pictures(11, 0);
+  EXPECT_TRUE(check.differs());
+  pictures(1, 0);
+  EXPECT_FALSE(check.differs());
+}
+
 TEST_F(TurnCheckTest, TakesTheShortWayRound) {
   for (int i = 0; i < 15; ++i) check.compare(at_ms(33 * i), 3.1, -3.1);
   EXPECT_NEAR(check.difference_rad(), 2 * std::numbers::pi - 6.2, 1e-9);
