@@ -38,7 +38,7 @@ void ViewLight::add(const TriangleMesh& mesh, const std::vector<std::uint32_t>& 
     const float axis_cosine = ray.dot(axis_) / distance_mm;
     if (!(seen_area > 0) || !(axis_cosine > cone_cosine_)) continue;
     const LitPoint point{distance_mm, axis_cosine, seen_area / doubled_area.norm()};
-    const double weight = seen_area / (distance_mm * distance_mm);
+    const double weight = static_cast<double>(step) * seen_area / (distance_mm * distance_mm);
     sum_ += weight * std::pow(light_at(point, fall_off_), 1 / kDisplayPower);
     weight_ += weight;
   }
