@@ -10,7 +10,7 @@ Texture make_texture(const TextureShape& shape) {
   glGenTextures(1, &id);
   glBindTexture(GL_TEXTURE_2D, id);
   glTexStorage2D(GL_TEXTURE_2D, shape.levels, shape.internal_format, shape.width, shape.height);
-  const GLint smaller = shape.levels == 1 ? shape.filter : GL_LINEAR_MIPMAP_NEAREST;
+  const GLint smaller = shape.levels == 1 ? shape.filter : GL_LINEAR_MIPMAP_LINEAR;
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, smaller);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, shape.filter);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);

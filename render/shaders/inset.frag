@@ -5,5 +5,5 @@ out vec4 o_colour;
 void main() {
   float cover = inset_cover(v_place, u_radius_px);
   if (cover <= 0.0) discard;
-  o_colour = vec4(picture_at(inset_pixel(v_place), inset_level(u_radius_px)), cover);
+  o_colour = vec4(inset_colour(v_place, u_radius_px), cover);
 }

@@ -1,10 +1,11 @@
-// How much of a pixel's colour counts: all within the circle that shows something, fading to nothing at its rim.
+// How much of a pixel's colour counts: all within the circle that shows something, fading to nothing at its rim and, where
+// the circle reaches beyond the picture, at the picture's edge.
 vec2 from_circle_centre(vec2 pixel) {
   return (pixel - vec2(u_circle.x, u_circle.y)) * vec2(1.0, u_aspect);
 }
 
 real mask_weight(vec2 pixel) {
-  return clamp((u_circle.z - length(from_circle_centre(pixel))) / u_circle.w, 0.0, 1.0);
+  return clamp(min(u_circle.z - length(from_circle_centre(pixel)), within_picture(pixel)) / u_circle.w, 0.0, 1.0);
 }
 
 // Nothing of what is black about the notch. How deep and wide a maker cuts it is in no passport, and some let it stick

@@ -8,6 +8,12 @@ vec3 rgb_of(real y, vec2 cbcr) {
   return clamp(vec3(l + 1.59602679 * c.y, l - 0.39176229 * c.x - 0.81296765 * c.y, l + 2.01723214 * c.x), 0.0, 1.0);
 }
 
+// From the pixel to the nearest edge of the picture, pixels made square; negative beside it.
+real within_picture(vec2 pixel) {
+  return min(min(pixel.x + 0.5, u_picture_size.x - 0.5 - pixel.x),
+             min(pixel.y + 0.5, u_picture_size.y - 0.5 - pixel.y) * u_aspect);
+}
+
 // Chroma is sited with the left luma sample of its pair, and between the two rows it belongs to. Level 0 is the picture,
 // each further one half as fine; chroma starts at half.
 vec3 picture_at(vec2 pixel, real level) {

@@ -38,7 +38,7 @@ class InsetRules : private PictureRules {
       hn::StoreU(under, Wholes(), to);
       return;
     }
-    const vec3 live = picture_at(inset_pixel(place), inset_level(job_.radius_px));
+    const vec3 live = inset_colour(place, job_.radius_px);
     const vec3 below = vec3(byte_of<0>(under), byte_of<8>(under), byte_of<16>(under)) * (1 / 255.0);
     const vec3 colour = mix(below, live, cover);
     hn::StoreU(rgba_of(colour.x, colour.y, colour.z, 1.0), Wholes(), to);

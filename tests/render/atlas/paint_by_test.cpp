@@ -162,6 +162,22 @@ TEST(PaintBy, CoarserLevelsAreTheSame) {
   both.expect_alike();
 }
 
+/// As fine as texels are wide, where one level is not like the next.
+TEST(PaintBy, FineGrainIsAveragedTheSame) {
+  const ScopeModel scope = scenes::scope();
+  scenes::Rgba picture{scope.width_px, scope.height_px, {}};
+  for (int y = 0; y < scope.height_px; ++y)
+    for (int x = 0; x < scope.width_px; ++x) {
+      const auto level = static_cast<std::uint8_t>(x / 3 % 3 == 0 && y / 3 % 3 == 0 ? 190 : 90);
+      picture.bytes.insert(picture.bytes.end(), {level, level, level, 255});
+    }
+  for (const double texel_mm : {0.15, 0.25}) {
+    BothPainters both(scope, {}, texel_mm);
+    both.view(picture.descriptor(), looking(0, 0.1), 1);
+    both.expect_alike();
+  }
+}
+
 TEST(PaintBy, StepsOfAFewCellsAreTheSame) {
   const ScopeModel scope = scenes::scope();
   BothPainters both(scope, {.max_texels_per_step = 5'000});

@@ -68,6 +68,26 @@ TEST_P(PainterLens, PutsEveryPixelWhereTheLensSaysItComesFrom) {
 INSTANTIATE_TEST_SUITE_P(Models, PainterLens,
                          ::testing::Values(LensModel::brown, LensModel::poly4, LensModel::fisheye));
 
+TEST_F(PainterTest, LeavesWhatTheCircleHasBesideThePictureUnpainted) {
+  ScopeModel scope = scenes::scope();
+  scope.mask = {.cx_px = 319.5, .cy_px = 239.5, .radius_px = 400, .soft_edge_px = 6};  // to the corners
+  scope.cone_half_angle_rad = 1;
+  ASSERT_NO_FATAL_FAILURE(use(scenes::plane(20, 80, 20), scope));
+  auto picture = scenes::flat(scope, 200, 10, 10);
+  painter_->upload(picture.descriptor());
+  painter_->paint(scenes::whole(surface_, {}), 1);
+  const AtlasRecords records = painter_->read_records();
+  std::size_t painted = 0, beside = 0;
+  for (std::size_t i = 0; i < layout_.owners.size(); ++i) {
+    if (layout_.inside[i] == 0 || records.texels[i].capture == 0) continue;
+    ++painted;
+    const auto pixel = project(scope.lens, scenes::point_of(surface_, layout_, i));
+    beside += !pixel || std::abs(pixel->x() - 319.5) > 320.1 || std::abs(pixel->y() - 239.5) > 240.1;
+  }
+  EXPECT_GT(painted, 20'000u);
+  EXPECT_EQ(beside, 0u);
+}
+
 TEST_F(PainterTest, LeavesWhatIsHiddenBehindANearerPlateUnpainted) {
   const ScopeModel scope = scenes::scope();
   Surface surface = scenes::plane(30, 40, 12);

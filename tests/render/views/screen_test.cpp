@@ -160,6 +160,20 @@ TEST_F(ScreenTest, ShowsTheLivePictureInItsInsetAndBlanksIt) {
   EXPECT_LT(drawn().at(x, y)[1], 40);
 }
 
+TEST_F(ScreenTest, TheInsetIsBlackBesideThePicture) {
+  scope_.mask = {.cx_px = 319.5, .cy_px = 239.5, .radius_px = 400, .soft_edge_px = 6};  // to the corners
+  use(scenes::plane(20, 60, 8));
+  auto picture = scenes::flat(scope_, 20, 220, 40);
+  painter_->upload(picture.descriptor());
+  const int x = static_cast<int>(layout_of_panel_.inset_centre.x);
+  const auto green = [&](double up) {
+    const double y = layout_of_panel_.inset_centre.y - up * layout_of_panel_.inset_radius_px;
+    return drawn().at(x, static_cast<int>(y))[1];
+  };
+  EXPECT_NEAR(green(0.55), 220, 2);
+  EXPECT_LT(green(0.65), 10) << "400 * 0.65 px up is above the first row";
+}
+
 TEST_F(ScreenTest, OutlinesTheScopeOnlyWhereItIsKnown) {
   use(scenes::plane(20, 60, 8));
   const Pixels without = drawn();
