@@ -1,5 +1,6 @@
 // MetaImage (.mha, .mhd) as ITK writes and reads it: its world is LPS, a row of TransformMatrix is where one
 // axis runs.
+#include <algorithm>
 #include <cmath>
 
 #include "tools/volume/header_words.hpp"
@@ -53,11 +54,21 @@ std::optional<VoxelType> voxel_type(const std::string& word) {
   return found == known.end() ? std::nullopt : std::optional{found->second};
 }
 
-Result<std::vector<double>> three(const std::string& name, const MetaHeader& header,
-                                  std::initializer_list<const char*> keys, const char* fallback) {
-  const std::string text = field(header.fields, keys).value_or(fallback);
-  auto numbers = numbers_of(text, 3);
-  if (!numbers) return fail(name + ": has " + *keys.begin() + " = " + text + "; three numbers are expected");
+/// How many axes the file has: 3, or more of which the further ones are one voxel long.
+std::size_t axes_of(const MetaHeader& header) {
+  const auto sizes = numbers_of(field(header.fields, {"dimsize"}).value_or(""));
+  return sizes ? std::max<std::size_t>(sizes->size(), 3) : 3;
+}
+
+/// One number for each axis, of which the first three count.
+Result<std::vector<double>> for_each_axis(const std::string& name, const MetaHeader& header,
+                                          std::initializer_list<const char*> keys, double fallback) {
+  const auto text = field(header.fields, keys);
+  if (!text) return std::vector<double>(3, fallback);
+  auto numbers = numbers_of(*text, axes_of(header));
+  if (!numbers)
+    return fail(name + ": has " + *keys.begin() + " = " + *text + "; " + std::to_string(axes_of(header)) +
+                " numbers are expected");
   return *std::move(numbers);
 }
 
@@ -65,16 +76,22 @@ Result<void> place(const VolumeSource& source, const MetaHeader& header, VoxelLa
   const std::string name = source.file.string();
   const auto matrix = field(header.fields, {"transformmatrix", "rotation", "orientation"});
   if (!matrix && !source.where_unstated) return unstated_space(name, "no TransformMatrix");
-  const auto nine = numbers_of(matrix.value_or("1 0 0 0 1 0 0 0 1"), 9);
-  if (!nine) return fail(name + ": has TransformMatrix = " + *matrix + "; nine numbers are expected");
-  const auto spacing = three(name, header, {"elementspacing", "elementsize"}, "1 1 1");
-  const auto offset = three(name, header, {"offset", "position", "origin"}, "0 0 0");
+  const std::size_t axes = axes_of(header), numbers = axes * axes;
+  const auto whole = matrix ? numbers_of(*matrix, numbers) : std::nullopt;
+  if (matrix && !whole)
+    return fail(name + ": has TransformMatrix = " + *matrix + "; " + std::to_string(numbers) +
+                " numbers are expected");
+  const auto spacing = for_each_axis(name, header, {"elementspacing", "elementsize"}, 1);
+  const auto offset = for_each_axis(name, header, {"offset", "position", "origin"}, 0);
   if (!spacing) return tl::unexpected(spacing.error());
   if (!offset) return tl::unexpected(offset.error());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     lattice.origin_mm[axis] = (*offset)[axis];
     for (std::size_t row = 0; row < 3; ++row)
-      lattice.step_mm[axis][row] = (*nine)[3 * axis + row] * std::abs((*spacing)[axis]);
+      lattice.step_mm[axis][row] = (whole         ? (*whole)[axes * axis + row]
+                                    : axis == row ? 1
+                                                  : 0) *
+                                   std::abs((*spacing)[axis]);
   }
   if (!matrix) convert_to_lps(*source.where_unstated, lattice);
   return {};

@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 #include "tools/volume/volume_formats.hpp"
@@ -35,6 +36,8 @@ class Header {
 
   bool valid() const { return valid_; }
   bool single_file() const { return single_file_; }
+  /// Of the voxels in a single file: behind the header and the four bytes that tell of extensions.
+  std::size_t least_offset() const { return (second_ ? kBytes2 : kBytes1) + 4; }
   bool big_endian() const { return swapped_ == (std::endian::native == std::endian::little); }
   std::int64_t dim(std::size_t i) const {
     return second_ ? at<std::int64_t>(16 + 8 * i) : at<std::int16_t>(40 + 2 * i);
@@ -111,16 +114,82 @@ void set_from_quaternion(const Header& header, VoxelLattice& lattice) {
   }
 }
 
-Result<void> place(const VolumeSource& source, const Header& header, VoxelLattice& lattice) {
-  if (header.sform_code() > 0) {
-    for (std::size_t row = 0; row < 3; ++row) {
-      for (std::size_t axis = 0; axis < 3; ++axis) lattice.step_mm[axis][row] = header.srow(row, axis);
-      lattice.origin_mm[row] = header.srow(row, 3);
-    }
-    convert_to_lps(Space::ras, lattice);
-  } else if (header.qform_code() > 0) {
-    set_from_quaternion(header, lattice);
-    convert_to_lps(Space::ras, lattice);
+void set_from_affine(const Header& header, VoxelLattice& lattice) {
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t axis = 0; axis < 3; ++axis) lattice.step_mm[axis][row] = header.srow(row, axis);
+    lattice.origin_mm[row] = header.srow(row, 3);
+  }
+}
+
+double mm_per_unit(const Header& header) {
+  return header.units() == 1 ? 1000 : header.units() == 3 ? 0.001 : 1;  // metres, micrometres
+}
+
+constexpr double kSame_mm = 0.1;  ///< forms that agree within this at the volume's corners are one
+
+/// The most that a corner of the volume lies apart in two lattices of one size.
+double apart(const VoxelLattice& a, const VoxelLattice& b) {
+  double most = 0;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    std::array<double, 3> index{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      index[axis] = (corner >> axis & 1U) != 0 ? a.size[axis] - 1 : 0;
+    const PlainPoint p = place_of(a, index), q = place_of(b, index);
+    most = std::max(most, std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
+  }
+  return most;
+}
+
+std::string with_decimals(double number, int decimals) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, number);
+  return text.data();
+}
+
+/// An affine may stretch: volumes and lengths then are those of the space it leads to, not the patient's.
+void note_stretching(const Header& header, const VoxelLattice& lattice, std::vector<std::string>& notes) {
+  std::string columns, voxels;
+  bool stretched = false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double column = step_length_mm(lattice, static_cast<int>(axis)),
+                 voxel = std::abs(header.pixdim(axis + 1));
+    stretched =
+        stretched || !(std::abs(column - voxel) * mm_per_unit(header) * (lattice.size[axis] - 1) <= kSame_mm);
+    columns += (axis > 0 ? " x " : "") + with_decimals(column * mm_per_unit(header), 3);
+    voxels += (axis > 0 ? " x " : "") + with_decimals(voxel * mm_per_unit(header), 3);
+  }
+  if (stretched)
+    notes.push_back("its sform makes voxels of " + columns + " mm out of those of " + voxels +
+                    " mm that its pixdim states; lengths and volumes are the sform's");
+}
+
+/// Of two forms that disagree the one in the scanner's coordinates, the patient's own, and else the sform.
+void place_by_forms(const Header& header, VoxelLattice& lattice, std::vector<std::string>& notes) {
+  constexpr int kScanner = 1;
+  const int sform = header.sform_code(), qform = header.qform_code();
+  VoxelLattice by_quaternion = lattice;
+  set_from_quaternion(header, by_quaternion);
+  set_from_affine(header, lattice);
+  const double apart_mm = sform > 0 && qform > 0 ? apart(lattice, by_quaternion) * mm_per_unit(header) : 0;
+  const bool take_quaternion =
+      sform <= 0 || (!(apart_mm <= kSame_mm) && qform == kScanner && sform != kScanner);
+  if (!(apart_mm <= kSame_mm))
+    notes.push_back("its qform (code " + std::to_string(qform) + ") and its sform (code " +
+                    std::to_string(sform) + ") lie up to " + with_decimals(apart_mm, 1) + " mm apart; the " +
+                    (take_quaternion ? "qform" : "sform") +
+                    (qform == kScanner || sform == kScanner ? ", in the scanner's coordinates, was taken"
+                                                            : " was taken, neither is the scanner's"));
+  if (take_quaternion)
+    lattice = by_quaternion;
+  else
+    note_stretching(header, lattice, notes);
+  convert_to_lps(Space::ras, lattice);
+}
+
+Result<void> place(const VolumeSource& source, const Header& header, VoxelLattice& lattice,
+                   std::vector<std::string>& notes) {
+  if (header.sform_code() > 0 || header.qform_code() > 0) {
+    place_by_forms(header, lattice, notes);
   } else {
     if (!source.where_unstated)
       return unstated_space(source.file.string(), "neither a qform nor an sform code");
@@ -128,7 +197,7 @@ Result<void> place(const VolumeSource& source, const Header& header, VoxelLattic
       lattice.step_mm[axis][axis] = std::abs(header.pixdim(axis + 1));
     convert_to_lps(*source.where_unstated, lattice);
   }
-  const double scale = header.units() == 1 ? 1000 : header.units() == 3 ? 0.001 : 1;  // metres, micrometres
+  const double scale = mm_per_unit(header);
   for (std::size_t row = 0; row < 3; ++row) {
     lattice.origin_mm[row] *= scale;
     for (auto& step : lattice.step_mm) step[row] *= scale;
@@ -166,10 +235,15 @@ Result<Volume> parse_nifti(const VolumeSource& source) {
   if (!type)
     return fail(name + ": has voxels of NIfTI type " + std::to_string(header.datatype()) +
                 "; one integer or real intensity a voxel is accepted (no colour, no complex numbers)");
+  constexpr double kLargestOffset = 1e12;
+  if (!(header.vox_offset() <= kLargestOffset))
+    return fail(name + ": says its voxels start at byte " + std::to_string(header.vox_offset()) +
+                "; a place within the file is expected");
   Volume volume;
   for (std::size_t axis = 0; axis < 3; ++axis)
     volume.lattice.size[axis] = static_cast<int>(header.dim(axis + 1));
-  if (auto placed = place(source, header, volume.lattice); !placed) return tl::unexpected(placed.error());
+  if (auto placed = place(source, header, volume.lattice, volume.notes); !placed)
+    return tl::unexpected(placed.error());
   if (auto sound = check_lattice(name, volume.lattice); !sound) return tl::unexpected(sound.error());
   const bool scaled = std::isfinite(header.slope()) && header.slope() != 0;
   const VoxelEncoding encoding{.type = *type,
@@ -177,20 +251,21 @@ Result<Volume> parse_nifti(const VolumeSource& source) {
                                .slope = scaled ? header.slope() : 1,
                                .intercept = scaled ? header.intercept() : 0};
   volume.kind = std::string("NIfTI, ") + name_of(*type);
+  const double offset = std::max(header.vox_offset(), 0.0);  // some write 0 for "right behind the header"
   if (header.single_file()) {
-    const double offset = std::max(header.vox_offset(), 0.0);
-    const auto skip = std::min(static_cast<std::size_t>(offset), source.bytes.size());
-    if (auto taken = take_voxels(name, source.bytes.subspan(skip), encoding, volume); !taken)
+    const auto skip = std::max(static_cast<std::size_t>(offset), header.least_offset());
+    if (auto taken =
+            take_voxels(name, source.bytes.subspan(std::min(skip, source.bytes.size())), encoding, volume);
+        !taken)
       return tl::unexpected(taken.error());
     return volume;
   }
   std::string voxels = source.file.filename().string();
   if (const auto dot = voxels.rfind(".hdr"); dot != std::string::npos) voxels.replace(dot, 4, ".img");
-  const auto bytes =
-      read_detached(name, {.folder = source.file.parent_path(),
-                           .names = {voxels},
-                           .skip_bytes = static_cast<std::int64_t>(std::max(header.vox_offset(), 0.0)),
-                           .bytes_each = volume.lattice.voxels() * bytes_of(*type)});
+  const auto bytes = read_detached(name, {.folder = source.file.parent_path(),
+                                          .names = {voxels},
+                                          .skip_bytes = static_cast<std::int64_t>(offset),
+                                          .bytes_each = volume.lattice.voxels() * bytes_of(*type)});
   if (!bytes) return tl::unexpected(bytes.error());
   if (auto taken = take_voxels(name, *bytes, encoding, volume); !taken) return tl::unexpected(taken.error());
   return volume;

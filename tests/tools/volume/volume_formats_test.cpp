@@ -84,6 +84,70 @@ TEST(NiftiFile, AQuaternionIsObeyedWithItsHandedness) {
   EXPECT_NEAR(volume->lattice.origin_mm[0], -90, 1e-6);
 }
 
+TEST(NiftiFile, OfTwoFormsThatDisagreeTheScannersIsTakenAndTold) {
+  const TemporaryFolder folder;
+  Nifti file = Nifti().sform();  // voxels of 3 x 2 x 4 mm out of 1 x 1 x 2
+  file.put<std::int16_t>(252, 1);
+  file.put<std::int16_t>(254, 4);  // MNI
+  const auto volume = read(folder, "v.nii", file.bytes);
+  ASSERT_TRUE(volume) << volume.error().message;
+  EXPECT_NEAR(step_length_mm(volume->lattice, 0), 1, 1e-6);
+  EXPECT_NEAR(step_length_mm(volume->lattice, 2), 2, 1e-6);
+  ASSERT_EQ(volume->notes.size(), 1U);
+  EXPECT_NE(volume->notes[0].find("its qform (code 1) and its sform (code 4) lie up to"), std::string::npos);
+  EXPECT_NE(volume->notes[0].find("the qform, in the scanner's coordinates, was taken"), std::string::npos)
+      << volume->notes[0];
+  file.put<std::int16_t>(252, 2);
+  file.put<std::int16_t>(254, 1);
+  const auto by_sform = read(folder, "v.nii", file.bytes);
+  ASSERT_TRUE(by_sform);
+  EXPECT_NEAR(step_length_mm(by_sform->lattice, 0), 3, 1e-6);
+  EXPECT_NE(by_sform->notes.at(0).find("the sform, in the scanner's"), std::string::npos);
+}
+
+TEST(NiftiFile, AnAffineThatStretchesIsTold) {
+  const TemporaryFolder folder;
+  const auto volume = read(folder, "v.nii", Nifti().sform().bytes);
+  ASSERT_TRUE(volume);
+  ASSERT_EQ(volume->notes.size(), 1U);
+  EXPECT_NE(volume->notes[0].find("3.000 x 2.000 x 4.000 mm out of those of 1.000 x 1.000 x 2.000 mm"),
+            std::string::npos)
+      << volume->notes[0];
+}
+
+TEST(NiftiFile, FormsThatAgreeAreOneAndNothingIsTold) {
+  const TemporaryFolder folder;
+  Nifti file;
+  const float rows[] = {1, 0, 0, 10, 0, 1, 0, 20, 0, 0, 2.01F, 30};
+  for (std::size_t i = 0; i < 12; ++i) file.put<float>(280 + 4 * i, rows[i]);
+  for (std::size_t i = 0; i < 3; ++i) file.put<float>(268 + 4 * i, rows[4 * i + 3]);
+  file.put<std::int16_t>(252, 1);
+  file.put<std::int16_t>(254, 4);
+  const auto volume = read(folder, "v.nii", file.bytes);
+  ASSERT_TRUE(volume) << volume.error().message;
+  EXPECT_NEAR(step_length_mm(volume->lattice, 2), 2.01, 1e-6);
+  EXPECT_TRUE(volume->notes.empty()) << volume->notes[0];
+}
+
+TEST(NiftiFile, VoxelsNeverStartWithinTheHeader) {
+  const TemporaryFolder folder;
+  for (const float offset : {0.0F, -4.0F, 348.0F, 352.0F}) {
+    Nifti file = Nifti().sform();
+    file.put<float>(108, offset);
+    const auto volume = read(folder, "v.nii", file.bytes);
+    ASSERT_TRUE(volume) << volume.error().message;
+    EXPECT_EQ(volume->values[5], 5) << offset;
+  }
+  for (const float offset : {NAN, INFINITY, 1e30F}) {
+    Nifti file = Nifti().sform();
+    file.put<float>(108, offset);
+    expect_refused(read(folder, "v.nii", file.bytes), "a place within the file is expected");
+  }
+  Nifti beyond = Nifti().sform();
+  beyond.put<float>(108, 1e9F);
+  expect_refused(read(folder, "v.nii", beyond.bytes), "cut short");
+}
+
 TEST(NiftiFile, SlopeGzipAndByteOrder) {
   const TemporaryFolder folder;
   Nifti scaled = Nifti().sform();
@@ -246,6 +310,22 @@ TEST(MetaImageFile, ObeysMatrixOffsetAndByteOrder) {
   EXPECT_EQ(volume->lattice.step_mm[1], (PlainPoint{-2, 0, 0}));
   EXPECT_EQ(volume->lattice.step_mm[2], (PlainPoint{0, 0, 3}));
   EXPECT_EQ(volume->values[3], 3);
+}
+
+TEST(MetaImageFile, AFourthAxisOfOneVolumeIsDropped) {
+  const TemporaryFolder folder;
+  std::string header =
+      replaced(replaced(kMeta, "NDims = 3", "NDims = 4"), "DimSize = 3 2 2", "DimSize = 3 2 2 1");
+  header = replaced(replaced(header, "0 1 0 -1 0 0 0 0 1", "0 1 0 0 -1 0 0 0 0 0 1 0 0 0 0 1"), "5 6 7",
+                    "5 6 7 0");
+  const auto volume =
+      read(folder, "v.mha", replaced(header, "Spacing = 1 2 3", "Spacing = 1 2 3 1") + big_shorts());
+  ASSERT_TRUE(volume) << volume.error().message;
+  EXPECT_EQ(volume->lattice.origin_mm, (PlainPoint{5, 6, 7}));
+  EXPECT_EQ(volume->lattice.step_mm[0], (PlainPoint{0, 1, 0}));
+  EXPECT_EQ(volume->lattice.step_mm[1], (PlainPoint{-2, 0, 0}));
+  EXPECT_EQ(volume->lattice.step_mm[2], (PlainPoint{0, 0, 3}));
+  expect_refused(read(folder, "v.mha", header + big_shorts()), "spacing = 1 2 3; 4 numbers are expected");
 }
 
 TEST(MetaImageFile, DetachedAndCompressedVoxels) {
