@@ -44,8 +44,8 @@ int outcome_of_connect(int fd, Nanos patience) noexcept {
 Result<std::unique_ptr<TcpLink>> TcpLink::open(const TcpAddress& address, Nanos patience) {
   const auto peer = resolve(address);
   if (!peer) return tl::unexpected(peer.error());
-  std::unique_ptr<TcpLink> link(new TcpLink(*peer, patience));
-  if (const auto opened = link->reopen(); !opened) {
+  std::unique_ptr<TcpLink> link(new TcpLink(*peer));
+  if (const auto opened = link->connect(patience); !opened) {
     return fail("tracker at " + address.host + ":" + std::to_string(address.port) + " does not answer (" +
                 std::string(word_for(opened.error())) + "); switch it on, or name another host");
   }
@@ -53,6 +53,10 @@ Result<std::unique_ptr<TcpLink>> TcpLink::open(const TcpAddress& address, Nanos 
 }
 
 Result<void, PortFault> TcpLink::reopen() noexcept {
+  return connect(kReopenPatience);
+}
+
+Result<void, PortFault> TcpLink::connect(Nanos patience) noexcept {
   stream_.close();
   FileDescriptor descriptor(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!descriptor.valid()) return tl::unexpected(port_fault_of(errno));
@@ -60,7 +64,7 @@ Result<void, PortFault> TcpLink::reopen() noexcept {
   ::setsockopt(descriptor.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
   const int begun = ::connect(descriptor.get(), reinterpret_cast<const sockaddr*>(&peer_), sizeof peer_);
   int error_number = begun == 0 ? 0 : errno;
-  if (error_number == EINPROGRESS) error_number = outcome_of_connect(descriptor.get(), patience_);
+  if (error_number == EINPROGRESS) error_number = outcome_of_connect(descriptor.get(), patience);
   if (error_number != 0) return tl::unexpected(port_fault_of(error_number));
   stream_.adopt(std::move(descriptor));
   return {};

@@ -19,6 +19,9 @@ struct TcpAddress {
 /// One thread. A network device has no line: set_line() changes nothing, send_break() is not supported.
 class TcpLink final : public ByteLink {
  public:
+  /// What reopen() waits at most: a device on the cart's network answers within a millisecond or is not
+  /// there, and the thread that asks must not look hung (HeartbeatStage::kHung).
+  static constexpr Nanos kReopenPatience = 100ms;
   /// Resolves the name once and connects within the patience; refused in a sentence.
   static Result<std::unique_ptr<TcpLink>> open(const TcpAddress& address, Nanos patience = 2s);
 
@@ -32,15 +35,15 @@ class TcpLink final : public ByteLink {
   void discard_input() noexcept override;
   Result<void, PortFault> set_line(const LineSettings&) noexcept override { return {}; }
   Result<void, PortFault> send_break() noexcept override { return tl::unexpected(PortFault::unsupported); }
-  /// Blocks for the patience at most.
+  /// Blocks for kReopenPatience at most.
   Result<void, PortFault> reopen() noexcept override;
   void wait(Instant deadline) noexcept override { stream_.wait(deadline); }
 
  private:
-  TcpLink(const sockaddr_in& peer, Nanos patience) noexcept : peer_(peer), patience_(patience) {}
+  explicit TcpLink(const sockaddr_in& peer) noexcept : peer_(peer) {}
+  Result<void, PortFault> connect(Nanos patience) noexcept;
 
   sockaddr_in peer_;
-  Nanos patience_;
   ByteStream stream_;
 };
 

@@ -6,6 +6,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <string>
@@ -260,6 +261,45 @@ TEST(RealLinks, ComeBackAfterTheNetworkCableWasOut) {
   const auto tcp = TcpLink::open({.host = "127.0.0.1", .port = port});
   ASSERT_TRUE(tcp) << tcp.error().message;
   EXPECT_TRUE(comes_back_over(**tcp, 0));
+}
+
+/// Listens, but nobody takes the connections: once the queue is full nothing answers, as a device that
+/// restarts.
+class DeafListener {
+ public:
+  DeafListener() {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    ok = ::bind(socket_.get(), reinterpret_cast<sockaddr*>(&address), size) == 0 &&
+         ::listen(socket_.get(), 0) == 0 &&
+         ::getsockname(socket_.get(), reinterpret_cast<sockaddr*>(&address), &size) == 0;
+    port = ntohs(address.sin_port);
+  }
+  bool ok = false;
+  std::uint16_t port = 0;
+
+ private:
+  FileDescriptor socket_{::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+};
+
+TEST(RealLinks, WaitForANetworkDeviceThatRestartsNoLongerThanAThreadMayStandStill) {
+  const DeafListener listener;
+  ASSERT_TRUE(listener.ok);
+  auto link = TcpLink::open({.host = "127.0.0.1", .port = listener.port});
+  ASSERT_TRUE(link) << link.error().message;
+  RealClock clock;
+  Nanos longest{};
+  bool refused = false;
+  for (int tries = 0; tries < 4 && !refused; ++tries) {
+    const Instant begin = clock.now();
+    refused = !(*link)->reopen();
+    longest = std::max(longest, clock.now() - begin);
+  }
+  EXPECT_TRUE(refused);
+  EXPECT_GE(longest, TcpLink::kReopenPatience - 1ms);
+  EXPECT_LT(longest, 500ms) << "was 2 s: the watchdog ended the cart";
 }
 
 TEST(UnixPort, ServesOneClientAfterTheOther) {
