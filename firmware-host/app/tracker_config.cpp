@@ -1,6 +1,9 @@
 // Reads [tracker], each kind with its own keys.
 #include "firmware-host/app/tracker_config.hpp"
 
+#include <array>
+#include <string_view>
+
 namespace orcart {
 namespace {
 
@@ -55,6 +58,26 @@ void read_tool(const TomlSection& section, const std::string& tool, std::filesys
   }
 }
 
+bool is_same(const TrackedTool& a, const TrackedTool& b) {
+  if (a.wired.has_value() != b.wired.has_value()) return false;
+  if (a.wired) return a.wired->number == b.wired->number && a.wired->channel == b.wired->channel;
+  return a.definition.memory == b.definition.memory;
+}
+
+/// One tool under two names would be its own reference. Names are those of the keys.
+Result<void> check_distinct(const std::vector<TrackedTool>& tools) {
+  constexpr std::array<std::string_view, 3> kNames{"scope", "reference", "second"};
+  for (std::size_t a = 0; a < tools.size(); ++a) {
+    for (std::size_t b = a + 1; b < tools.size(); ++b) {
+      if (!is_same(tools[a], tools[b])) continue;
+      const std::string what = tools[a].wired ? "_port" : "_rom";
+      return fail("[tracker] " + std::string(kNames[a]) + what + " and " + std::string(kNames[b]) + what +
+                  " name the same tool (" + tools[a].name() + "); each wants one of its own");
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 void read_tracker(const TomlSection& section, TrackerConfig& tracker) {
@@ -106,6 +129,7 @@ Result<NdiSettings> settings_of(const TrackerConfig& tracker) {
     if (!tool) return tl::unexpected(tool.error());
     settings.tools.emplace_back(std::move(*tool));
   }
+  if (auto distinct = check_distinct(settings.tools); !distinct) return tl::unexpected(distinct.error());
   if (auto checked = check(settings); !checked) return tl::unexpected(checked.error());
   return settings;
 }

@@ -103,6 +103,23 @@ TEST(TrackerConfig, TakesAToolByItsPortInsteadOfItsDefinition) {
   EXPECT_TRUE(tells(complaint("kind = \"usb\"\nscope_port = 2\n"), "either wireless or plugged in"));
 }
 
+TEST(TrackerConfig, RefusesOneToolUnderTwoNames) {
+  TrackerConfig ports{.kind = TrackerKind::usb, .scope_port = {.number = 2}, .reference_port = {.number = 2}};
+  ASSERT_FALSE(settings_of(ports));
+  EXPECT_EQ(
+      settings_of(ports).error().message,
+      "[tracker] scope_port and reference_port name the same tool (in port 2); each wants one of its own");
+  ports.reference_port.channel = 1;
+  EXPECT_TRUE(settings_of(ports));
+  const auto tools = here().parent_path().parent_path() / "tools";
+  TrackerConfig roms{.scope_rom = tools / "scope.rom", .reference_rom = tools / "reference.rom"};
+  EXPECT_TRUE(settings_of(roms)) << settings_of(roms).error().message;
+  roms.second = true;
+  roms.second_rom = roms.reference_rom;
+  ASSERT_FALSE(settings_of(roms));
+  EXPECT_TRUE(tells(settings_of(roms).error().message, "reference_rom and second_rom name the same tool"));
+}
+
 TEST(OpenTracker, HasNothingToOpenForASimulatedOne) {
   SimulatedClock clock;
   const auto link = open_tracker({}, clock);
