@@ -21,6 +21,15 @@ constexpr Nanos kHostMargin = 8ms;
 constexpr int kActionsPerStep = 8;
 constexpr double kUnitTolerance = 0.02;
 constexpr std::uint8_t kInvalidCommand = 0x01;
+constexpr std::uint8_t kWrongParameters = 0x07;
+/// So often in a row no line damages a command by chance.
+constexpr int kRefusalsBelieved = 3;
+
+/// What a device answers to a command that was damaged on its way: unknown, too long, too short, a wrong CRC,
+/// or a wrong number of parameters.
+constexpr bool may_be_damage(std::uint8_t code) noexcept {
+  return (code >= kInvalidCommand && code <= 0x04) || code == kWrongParameters;
+}
 
 Nanos patience_for(const NdiSettings& settings) noexcept {
   const Nanos wire = ndi::wire_time(poll_exchange_bytes(settings.tools.size(), settings.poll), settings.baud);
@@ -43,6 +52,7 @@ NdiDriver::NdiDriver(NdiSettings settings, ByteLink& link)
 
 DriverReport NdiDriver::step(Instant now) noexcept {
   DriverReport report;
+  if (std::exchange(opened_in_vain_, false)) retry_at_ = now + pause_;
   if (phase_ == Phase::waiting && now >= retry_at_) retry(now);
   const ExchangeEvent event = link_is_down_ ? ExchangeEvent::none : exchange_.step(now);
   report.worked = event != ExchangeEvent::none;
@@ -62,7 +72,11 @@ DriverReport NdiDriver::step(Instant now) noexcept {
 
 void NdiDriver::retry(Instant now) noexcept {
   if (link_is_down_) {
-    if (!link_.reopen()) return give_up(TrackerTrouble::disconnected, now);
+    if (!link_.reopen()) {
+      give_up(TrackerTrouble::disconnected, now);
+      opened_in_vain_ = true;
+      return;
+    }
     link_is_down_ = false;
   }
   start(now);
@@ -82,7 +96,8 @@ void NdiDriver::give_up(TrackerTrouble trouble, Instant now) noexcept {
   if (health_ != TrackerHealth::starting) health_ = TrackerHealth::lost;
   exchange_.abandon();
   phase_ = Phase::waiting;
-  retry_at_ = now + back_off_;
+  pause_ = back_off_;
+  retry_at_ = now + pause_;
   back_off_ = std::min(2 * back_off_, kLongestBackOff);
 }
 
@@ -133,7 +148,11 @@ void NdiDriver::advance_start(ExchangeEvent event, Instant now) noexcept {
   for (int i = 0; i < kActionsPerStep && !exchange_.busy() && !in_pause_; ++i) {
     const StartAction action = start_.action();
     if (action.kind == StartAction::Kind::finished) return begin_polling(now);
-    if (action.kind == StartAction::Kind::failed) return give_up(start_.trouble(), now);
+    if (action.kind == StartAction::Kind::failed) {
+      refused_with_ = start_.error_code();
+      failed_tool_ = start_.failed_tool();
+      return give_up(start_.trouble(), now);
+    }
     if (!perform(action, now)) return give_up(TrackerTrouble::disconnected, now);
   }
 }
@@ -150,6 +169,8 @@ void NdiDriver::begin_polling(Instant now) noexcept {
   phase_ = Phase::polling;
   ask_for_ports_ = ask_for_alerts_ = false;
   alerts_ = told_ = {};
+  refusals_in_a_row_ = 0;
+  failed_tool_ = -1;
   form_ = settings_.poll;
   if (form_ == PollForm::automatic) form_ = best_form();
   port_status_.fill(ndi::kPortReady);
@@ -236,6 +257,7 @@ void NdiDriver::take_poses(Instant now, DriverReport& report) noexcept {
     return watch_.on_damaged_reply(now);
   }
   ++counters_.replies;
+  refusals_in_a_row_ = 0;
   watch_.on_good_reply(now);
   notice(*said);
   take_readings(*said, now, report);
@@ -260,13 +282,20 @@ void NdiDriver::take_text(std::string_view text, Instant now) noexcept {
 void NdiDriver::take_refusal(std::uint8_t code, Instant now) noexcept {
   if (asked_ == Asked::alerts || asked_ == Asked::beep)
     return watch_.on_good_reply(now);  // it cannot; no matter
+  if (may_be_damage(code) && ++refusals_in_a_row_ < kRefusalsBelieved) {
+    ++counters_.crc_bad;
+    ask_for_ports_ = ask_for_ports_ || asked_ == Asked::ports;
+    return watch_.on_damaged_reply(now);
+  }
+  refused_with_ = code;
   if (asked_ == Asked::poses && code == kInvalidCommand && settings_.poll == PollForm::automatic &&
       form_ != PollForm::tx) {
     form_ = form_ == PollForm::bx2 ? PollForm::bx : PollForm::tx;
-    return;
+    refusals_in_a_row_ = 0;
+    return watch_.on_good_reply(now);  // it answers; the next form has its own time
   }
-  // Not tracking, not initialised: the device has forgotten what it was told.
-  give_up(code == kInvalidCommand ? TrackerTrouble::device_refuses : TrackerTrouble::device_reset, now);
+  // Else it is not tracking, or not initialised: the device has forgotten what it was told.
+  give_up(may_be_damage(code) ? TrackerTrouble::device_refuses : TrackerTrouble::device_reset, now);
 }
 
 void NdiDriver::take_answer(std::string_view text, Instant now) noexcept {
@@ -367,7 +396,7 @@ std::string_view NdiDriver::disabled_reason(int tool) const noexcept {
 
 void NdiDriver::plan(Instant now) noexcept {
   if (phase_ == Phase::waiting) {
-    next_due_ = retry_at_;
+    next_due_ = opened_in_vain_ ? now : retry_at_;
   } else if (phase_ == Phase::starting) {
     next_due_ = in_pause_ ? pause_until_ : exchange_.deadline();
   } else {
@@ -378,12 +407,12 @@ void NdiDriver::plan(Instant now) noexcept {
 
 std::string NdiDriver::trouble_sentence() const {
   std::string sentence(word_for(trouble_));
-  const int tool = start_.failed_tool();
+  const int tool = failed_tool_;
   const bool names_a_tool = trouble_ == TrackerTrouble::device_refuses ||
                             trouble_ == TrackerTrouble::bad_answer || trouble_ == TrackerTrouble::tool_absent;
   if (!names_a_tool) return sentence;
   if (tool >= 0) sentence += " for tool " + settings_.tools[static_cast<std::size_t>(tool)].name();
-  if (start_.error_code() != 0) sentence += ": " + std::string(ndi::error_word(start_.error_code()));
+  if (refused_with_ != 0) sentence += ": " + std::string(ndi::error_word(refused_with_));
   return sentence;
 }
 

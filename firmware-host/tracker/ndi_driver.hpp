@@ -41,7 +41,7 @@ struct DriverCounters {
 };
 
 /// The settings must have passed check(). One thread; nothing allocates after construction; nothing blocks
-/// but the link's reopen(), while no tracker is there anyway.
+/// but the link's reopen(), while no tracker is there anyway; the pause before the next try begins after it.
 class NdiDriver {
  public:
   NdiDriver(NdiSettings settings, ByteLink& link);
@@ -126,9 +126,14 @@ class NdiDriver {
   ndi::SystemAlerts told_;  ///< by the newest frame of BX2
   std::atomic<int> beeps_wanted_{0};
   bool started_before_ = false;
+  int refusals_in_a_row_ = 0;      ///< of polls, without a good reply in between
+  std::uint8_t refused_with_ = 0;  ///< the code of the ERRORhh behind the newest trouble; 0 where none is
+  int failed_tool_ = -1;  ///< the tool that the newest failed start was busy with; -1 where with none
   Instant pause_until_{};
   Instant retry_at_{};
+  bool opened_in_vain_ = false;  ///< in the step before: reopen() took its time, of which `now` knew nothing
   Nanos back_off_;
+  Nanos pause_{};  ///< the one under way, or the last
   Instant next_poll_{};
   Instant next_due_{};
 

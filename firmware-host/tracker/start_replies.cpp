@@ -283,6 +283,8 @@ void StartSequence::on_version(std::string_view text) noexcept {
 void StartSequence::on_reply(std::string_view text) noexcept {
   if (const auto code = ndi::error_code(text)) return on_error(*code);
   if (text == "OKAY") return on_okay();
+  // Done all the same: a Polaris so initialises a tool whose memory it finds odd, and tracks it.
+  if (text.starts_with("WARNING")) return on_okay();
   switch (step_) {
     case Step::await_reset:
       return text == "RESET" ? go(Step::settle_after_reset) : on_no_reply();

@@ -19,6 +19,7 @@ constexpr Nanos kWiredPatience = 6s;      ///< an Aurora reads a tool's memory f
 StartSequence::StartSequence(const NdiSettings& settings) noexcept
     : settings_(settings),
       wanted_baud_(settings.baud),
+      line_baud_(settings.baud != 0 ? settings.baud : ndi::kPowerOnBaud),
       has_wired_(std::any_of(settings.tools.begin(), settings.tools.end(),
                              [](const TrackedTool& tool) { return tool.wired.has_value(); })) {}
 

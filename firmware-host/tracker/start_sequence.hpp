@@ -140,7 +140,7 @@ class StartSequence {
   const NdiSettings& settings_;
   Step step_ = Step::failed;
   std::uint32_t wanted_baud_;  ///< the fastest that is still worth trying
-  std::uint32_t line_baud_ = ndi::kPowerOnBaud;
+  std::uint32_t line_baud_;    ///< at first the wanted one: a program before this may have set it
   std::array<std::uint8_t, kMaxTools> handles_{};
   std::array<std::uint8_t, 64> old_{};
   std::size_t old_count_ = 0;

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <string>
+
+#include "realtime/base/crc16.hpp"
 #include "tests/firmware-host/tracker/tracker_rig.hpp"
 #include "tests/support/zero_allocation.hpp"
 
@@ -23,6 +27,13 @@ Nanos time_until(TrackerRig& rig, Nanos most, Done done) {
   return seen == Instant::max() ? most : seen - begin;
 }
 
+/// A text reply as it goes over the line.
+std::string with_crc(const std::string& text) {
+  char crc[8];
+  std::snprintf(crc, sizeof crc, "%04X\r", crc16(std::as_bytes(std::span(text))));
+  return text + crc;
+}
+
 TEST(NdiDriver, StartsADeviceAtItsPowerOnRateAndGoesToTheWantedOne) {
   TrackerRig rig;
   rig.start();
@@ -32,10 +43,24 @@ TEST(NdiDriver, StartsADeviceAtItsPowerOnRateAndGoesToTheWantedOne) {
   EXPECT_EQ(rig.driver.counters().restarts, 0u);
 }
 
-TEST(NdiDriver, StartsADeviceThatWasLeftTrackingAtAnotherRate) {
+TEST(NdiDriver, FindsADeviceThatWasLeftTrackingAtTheWantedRateAtOnceAndWithoutABreak) {
   TrackerRig rig;
   rig.start();
+  rig.link.breaks = 0;
   NdiDriver second(two_tools(), rig.link);
+  const Instant end = rig.clock.now() + 1s;
+  while (second.health() != TrackerHealth::live && rig.clock.now() < end) {
+    rig.link.wait(second.next_due());
+    second.step(rig.clock.now());
+  }
+  EXPECT_EQ(second.health(), TrackerHealth::live) << second.trouble_sentence();
+  EXPECT_EQ(rig.link.breaks, 0);
+}
+
+TEST(NdiDriver, StartsADeviceThatWasLeftTrackingAtAnotherRate) {
+  TrackerRig rig(two_tools(57600));
+  rig.start();
+  NdiDriver second(two_tools(115200), rig.link);
   const Instant end = rig.clock.now() + 5s;
   while (second.health() != TrackerHealth::live && rig.clock.now() < end) {
     rig.link.wait(second.next_due());
@@ -265,14 +290,80 @@ TEST(NdiDriver, OpensTheLinkAgainAfterItWasUnplugged) {
   TrackerRig rig;
   rig.start();
   rig.run_for(100ms);
-  rig.link.unplug();
+  rig.cable.unplug();
   const Nanos took =
       time_until(rig, 1s, [](const DriverReport& r) { return r.health == TrackerHealth::lost; });
   EXPECT_LE(took, 20ms);
   EXPECT_EQ(rig.driver.trouble(), TrackerTrouble::disconnected);
   rig.run_for(3s);
-  rig.link.plug_in();
+  rig.cable.plug_in();
   rig.start(15s);
+}
+
+TEST(NdiDriver, LetsTheThreadTurnBetweenTwoTriesOfALinkThatIsSlowToOpen) {
+  TrackerRig rig;
+  rig.start();
+  rig.link.reopen_takes = 300ms;
+  rig.cable.unplug();
+  rig.run_for(20s);
+  EXPECT_GE(rig.link.reopens, 5);
+  EXPECT_GE(rig.link.shortest_pause, 20ms) << "counted from the try's beginning there was none";
+}
+
+TEST(NdiDriver, TracksAToolOfWhichTheDeviceWarns) {
+  for (const std::string warning : {"WARNING7423\r", "WARNING05"}) {
+    TrackerRig rig;
+    bool initialising = false;
+    int warned = 0;
+    rig.link.on_write = [&](const std::string& command) { initialising = command.starts_with("PINIT"); };
+    rig.link.on_read = [&](std::string& reply) {
+      if (!initialising) return;
+      ASSERT_EQ(reply, "OKAYA896\r");
+      reply = warning.ends_with('\r') ? warning : with_crc(warning);
+      ++warned;
+    };
+    rig.start();
+    EXPECT_EQ(warned, 2);
+    rig.run_for(100ms);
+    EXPECT_EQ(rig.driver.reply().tools[0].state, ToolState::seen);
+  }
+}
+
+TEST(NdiDriver, AsksAgainWhereACommandWasDamagedOnItsWay) {
+  // Another option: ERROR04. A name that nobody knows, in the form without a CRC: ERROR01.
+  for (const std::string arrives : {"", "BY 0801\r"}) {
+    TrackerRig rig;
+    rig.start();
+    rig.run_for(200ms);
+    const PollForm form = rig.driver.poll_form();
+    int damaged = 0;
+    int polls = 0;
+    rig.link.on_write = [&](std::string& command) {
+      if (++polls % 30 != 0) return;
+      command[5] ^= 0x01;
+      if (!arrives.empty()) command = arrives;
+      ++damaged;
+    };
+    rig.run_for(10s, [](const DriverReport& r) { EXPECT_EQ(r.health, TrackerHealth::live); });
+    EXPECT_GE(damaged, 15);
+    EXPECT_EQ(rig.driver.counters().restarts, 0u);
+    EXPECT_EQ(rig.driver.poll_form(), form);
+    EXPECT_GE(rig.driver.counters().crc_bad, 15u);
+  }
+}
+
+TEST(NdiDriver, GivesUpADeviceThatRefusesThreePollsInARow) {
+  TrackerRig rig;
+  rig.start();
+  rig.run_for(200ms);
+  rig.link.on_write = [](std::string& command) { command[5] ^= 0x01; };
+  const Nanos took =
+      time_until(rig, 1s, [](const DriverReport& r) { return r.health == TrackerHealth::lost; });
+  EXPECT_LE(took, 5 * period_of(60));
+  EXPECT_EQ(rig.driver.trouble(), TrackerTrouble::device_refuses);
+  EXPECT_EQ(rig.driver.trouble_sentence(), "the tracker refuses a command: the command's CRC is wrong");
+  rig.link.on_write = {};
+  rig.start();
 }
 
 TEST(NdiDriver, SaysWhichToolTheDeviceRefused) {

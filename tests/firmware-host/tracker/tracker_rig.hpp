@@ -11,6 +11,7 @@
 #include "board/sim/ndi/simulated_byte_link.hpp"
 #include "firmware-host/tracker/ndi/tool_definition_writer.hpp"
 #include "firmware-host/tracker/ndi_driver.hpp"
+#include "tests/firmware-host/tracker/link_between.hpp"
 
 namespace orcart::testing {
 
@@ -42,7 +43,10 @@ inline NdiSettings two_tools(std::uint32_t baud = 115200) {
 
 struct TrackerRig {
   explicit TrackerRig(NdiSettings driver_settings = two_tools(), NdiEmulatorSettings device_settings = {})
-      : device(device_settings, motion), link(device, clock), driver(std::move(driver_settings), link) {}
+      : device(device_settings, motion),
+        cable(device, clock),
+        link(cable, clock),
+        driver(std::move(driver_settings), link) {}
 
   /// Steps the driver whenever input or its own plan wants it, until `at`. Each report goes to `see`.
   void run_until(Instant at, const std::function<void(const DriverReport&)>& see = {}) {
@@ -69,7 +73,8 @@ struct TrackerRig {
   CirclingTools motion;
   SimulatedClock clock;
   NdiEmulator device;
-  SimulatedByteLink link;
+  SimulatedByteLink cable;
+  LinkBetween link;
   NdiDriver driver;
 };
 
