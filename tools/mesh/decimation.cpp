@@ -5,6 +5,7 @@
 #include <limits>
 #include <queue>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -57,6 +58,7 @@ class Decimator {
         quadrics_[vertex].add_plane(normal, -normal.dot(places_[triangles_[t][0]]), twice_area / 2);
       }
     }
+    find_rims();
     for (const auto& t : triangles_)
       for (std::size_t i = 0; i < 3; ++i)
         if (t[i] < t[(i + 1) % 3]) weigh(t[i], t[(i + 1) % 3]);
@@ -91,12 +93,27 @@ class Decimator {
   }
 
  private:
+  /// The ends of edges without exactly two triangles stay where they are.
+  void find_rims() {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const auto& t : triangles_)
+      for (std::size_t i = 0; i < 3; ++i) edges.push_back(std::minmax({t[i], t[(i + 1) % 3]}));
+    std::sort(edges.begin(), edges.end());
+    on_rim_.resize(places_.size());
+    for (std::size_t i = 0, next = 0; i < edges.size(); i = next) {
+      while (next < edges.size() && edges[next] == edges[i]) ++next;
+      if (next != i + 2) on_rim_[edges[i].first] = on_rim_[edges[i].second] = true;
+    }
+  }
+
   Vector3d normal_of(const std::array<std::uint32_t, 3>& t) const {
     return (places_[t[1]] - places_[t[0]]).cross(places_[t[2]] - places_[t[0]]);
   }
 
-  /// Where the two ends meet with the least error; their middle where the planes do not say.
+  /// Where the two ends meet with the least error; their middle where the planes do not say. At the one that
+  /// is on a rim.
   Vector3d meeting_point(std::uint32_t keep, std::uint32_t drop, const Quadric& sum) const {
+    if (on_rim_[keep] || on_rim_[drop]) return places_[on_rim_[keep] ? keep : drop];
     const Vector3d middle = (places_[keep] + places_[drop]) / 2;
     const double length = (places_[keep] - places_[drop]).norm();
     const double scale = sum.a.trace();
@@ -107,6 +124,7 @@ class Decimator {
 
   /// A little of the edge's length is added, so that flat parts thin out evenly.
   void weigh(std::uint32_t a, std::uint32_t b) {
+    if (on_rim_[a] && on_rim_[b]) return;  // an inner edge between them would pinch the surface
     const Quadric sum = quadrics_[a] + quadrics_[b];
     const double squared_length = (places_[a] - places_[b]).squaredNorm();
     const double cost = sum.at(meeting_point(a, b, sum)) + 1e-3 * squared_length * squared_length;
@@ -149,6 +167,7 @@ class Decimator {
   }
 
   void try_collapse(std::uint32_t keep, std::uint32_t drop) {
+    if (on_rim_[drop]) std::swap(keep, drop);
     const Quadric sum = quadrics_[keep] + quadrics_[drop];
     const Vector3d place = meeting_point(keep, drop, sum);
     if (!link_condition(keep, drop) || !keeps_facing(keep, drop, place) || !keeps_facing(drop, keep, place))
@@ -174,6 +193,7 @@ class Decimator {
 
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<bool> alive_;
+  std::vector<bool> on_rim_;
   std::size_t left_;
   std::vector<Vector3d> places_;
   std::vector<Quadric> quadrics_;

@@ -77,6 +77,55 @@ void count_edges(const TriangleMesh& mesh, const RayScene& rays, MeshFigures& fi
   }
 }
 
+/// How often the other pieces enclose a place, by where a ray from it leaves and enters them: 1 within one
+/// piece, 0 outside all and within a hollow.
+int enclosed(const TriangleMesh& mesh, const RayScene& rays, const MeshComponents& pieces, std::size_t own,
+             const Eigen::Vector3f& place, const Eigen::Vector3f& direction) {
+  constexpr int kMostHits = 10'000;
+  constexpr float kFar_mm = 100'000;
+  int count = 0;
+  float from = 0;
+  for (int i = 0; i < kMostHits; ++i) {
+    const auto hit = rays.nearest(place, direction, kFar_mm, from);
+    if (!hit) break;
+    from = std::max(hit->distance_mm * (1 + 1e-6F), hit->distance_mm + 1e-5F);
+    if (pieces.component_of[hit->triangle] == own) continue;
+    const auto& t = mesh.triangles[hit->triangle];
+    const Eigen::Vector3f normal = (mesh.vertices_mm[t[1]] - mesh.vertices_mm[t[0]])
+                                       .cross(mesh.vertices_mm[t[2]] - mesh.vertices_mm[t[0]]);
+    count += normal.dot(direction) > 0 ? 1 : -1;
+  }
+  return count;
+}
+
+/// Closed pieces of negative volume that lie in no other: what is inside one counts as outside.
+void count_inverted(const TriangleMesh& mesh, const RayScene& rays, const MeshComponents& pieces,
+                    MeshFigures& figures) {
+  std::vector<double> six_volumes(pieces.triangles.size(), 0);
+  std::vector<std::uint32_t> first(pieces.triangles.size(), 0);
+  for (std::size_t t = mesh.triangles.size(); t-- > 0;) {
+    const auto& corners = mesh.triangles[t];
+    const Eigen::Vector3d a = mesh.vertices_mm[corners[0]].cast<double>(),
+                          b = mesh.vertices_mm[corners[1]].cast<double>(),
+                          c = mesh.vertices_mm[corners[2]].cast<double>();
+    six_volumes[pieces.component_of[t]] += a.dot(b.cross(c));
+    first[pieces.component_of[t]] = corners[0];
+  }
+  const std::array directions = {Eigen::Vector3f(0.267F, 0.534F, 0.802F).normalized(),
+                                 Eigen::Vector3f(-0.731F, 0.211F, -0.649F).normalized(),
+                                 Eigen::Vector3f(0.413F, -0.877F, 0.245F).normalized()};
+  for (std::size_t piece = 0; piece < six_volumes.size(); ++piece) {
+    if (six_volumes[piece] >= 0) continue;
+    const Eigen::Vector3f place = mesh.vertices_mm[first[piece]];
+    int outside = 0;  // a ray may graze an edge: two of three decide
+    for (const Eigen::Vector3f& direction : directions)
+      outside += enclosed(mesh, rays, pieces, piece, place, direction) <= 0 ? 1 : 0;
+    if (outside < 2) continue;
+    ++figures.inverted_components;
+    figures.inverted_at_mm = place;
+  }
+}
+
 }  // namespace
 
 Result<MeshFigures> measure_mesh(const TriangleMesh& mesh) {
@@ -92,13 +141,16 @@ Result<MeshFigures> measure_mesh(const TriangleMesh& mesh) {
     six_volumes += a.dot(b.cross(c));
   }
   figures.volume_ml = six_volumes / 6000;
-  figures.components = components_of(mesh).triangles.size();
+  const MeshComponents pieces = components_of(mesh);
+  figures.components = pieces.triangles.size();
   figures.lowest_mm = figures.highest_mm = mesh.vertices_mm.front();
   for (const auto& vertex : mesh.vertices_mm) {
     figures.lowest_mm = figures.lowest_mm.cwiseMin(vertex);
     figures.highest_mm = figures.highest_mm.cwiseMax(vertex);
   }
   count_edges(mesh, *rays, figures);
+  if (figures.open_edges + figures.crowded_edges + figures.misturned_edges == 0)
+    count_inverted(mesh, *rays, pieces, figures);
   figures.euler_number = static_cast<long>(figures.vertices) - static_cast<long>(figures.edges) +
                          static_cast<long>(figures.triangles);
   return figures;
@@ -119,6 +171,15 @@ std::optional<std::string> trouble_of(const MeshFigures& figures) {
         "it is open along %zu edges; paint works, but what is inside cannot be told near the holes, "
         "so close it where it was made if the scope looks there",
         figures.open_edges);
+    return text;
+  }
+  if (figures.inverted_components > 0) {
+    std::snprintf(
+        text, sizeof text,
+        "%zu of its pieces are inside out, e.g. the one at (%.1f, %.1f, %.1f) mm LPS; what is inside "
+        "them counts as outside, so turn their faces where they were made",
+        figures.inverted_components, static_cast<double>(figures.inverted_at_mm.x()),
+        static_cast<double>(figures.inverted_at_mm.y()), static_cast<double>(figures.inverted_at_mm.z()));
     return text;
   }
   if (figures.piercing_edges > 0) {

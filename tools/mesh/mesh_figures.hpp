@@ -21,6 +21,8 @@ struct MeshFigures {
   std::size_t misturned_edges = 0;  ///< whose two triangles run along it in the same direction
   std::size_t piercing_edges = 0;   ///< that go through a triangle which shares no vertex with them
   Eigen::Vector3f pierced_at_mm = Eigen::Vector3f::Zero();  ///< one place where that happens
+  std::size_t inverted_components = 0;  ///< closed, inside out, and no hollow of another; 0 where not certain
+  Eigen::Vector3f inverted_at_mm = Eigen::Vector3f::Zero();  ///< a vertex of one
   Eigen::Vector3f lowest_mm = Eigen::Vector3f::Zero(), highest_mm = Eigen::Vector3f::Zero();
 };
 
@@ -28,7 +30,8 @@ struct MeshFigures {
 /// goes through itself.
 Result<MeshFigures> measure_mesh(const TriangleMesh& mesh);
 
-/// One sentence where the surface is no good skin of a solid: open, branching, turned over or through itself.
+/// One sentence where the surface is no good skin of a solid: open, branching, turned over, in part inside
+/// out or through itself.
 std::optional<std::string> trouble_of(const MeshFigures& figures);
 
 }  // namespace orcart

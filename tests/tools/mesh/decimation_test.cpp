@@ -1,8 +1,13 @@
 // Thinned-out surfaces stay closed, keep their genus, their volume and their facing.
 #include "tools/mesh/decimation.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
+
+#include <Eigen/Geometry>
 
 #include <gtest/gtest.h>
 
@@ -60,6 +65,38 @@ TEST(Decimation, StopsBeforeTheTopologyWouldChange) {
   EXPECT_GE(least.triangles.size(), 14U);  // no torus has fewer (Csaszar 1949)
   EXPECT_TRUE(checks::is_closed(least));
   EXPECT_EQ(euler_number(least), 0);
+}
+
+TEST(Decimation, AnOpenSurfaceKeepsItsRim) {
+  constexpr std::uint32_t kAcross = 60;
+  TriangleMesh plane;
+  for (std::uint32_t y = 0; y <= kAcross; ++y)
+    for (std::uint32_t x = 0; x <= kAcross; ++x)
+      plane.vertices_mm.emplace_back(static_cast<float>(x), static_cast<float>(y), 0.0F);
+  for (std::uint32_t y = 0; y < kAcross; ++y)
+    for (std::uint32_t x = 0; x < kAcross; ++x) {
+      const std::uint32_t a = y * (kAcross + 1) + x, b = a + kAcross + 1;
+      plane.triangles.push_back({a, a + 1, b + 1});
+      plane.triangles.push_back({a, b + 1, b});
+    }
+  const TriangleMesh coarse = decimate(plane, 1000);
+  EXPECT_LE(coarse.triangles.size(), 1000U);
+  double area_mm2 = 0;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const auto& t : coarse.triangles) {
+    const Eigen::Vector3f ab = coarse.vertices_mm[t[1]] - coarse.vertices_mm[t[0]],
+                          ac = coarse.vertices_mm[t[2]] - coarse.vertices_mm[t[0]];
+    area_mm2 += static_cast<double>(ab.cross(ac).z()) / 2;
+    for (std::size_t i = 0; i < 3; ++i) ++edges[std::minmax({t[i], t[(i + 1) % 3]})];
+  }
+  EXPECT_NEAR(area_mm2, 3600, 0.1);
+  std::map<std::uint32_t, int> open_at;
+  for (const auto& [ends, count] : edges) {
+    ASSERT_LE(count, 2);
+    if (count == 1) ++open_at[ends.first], ++open_at[ends.second];
+  }
+  EXPECT_EQ(open_at.size(), 4U * kAcross);
+  for (const auto& [vertex, count] : open_at) EXPECT_EQ(count, 2) << "a pinch at vertex " << vertex;
 }
 
 TEST(Decimation, ASmallEnoughSurfaceIsLeftAlone) {

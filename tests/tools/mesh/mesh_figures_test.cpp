@@ -37,6 +37,32 @@ TEST(MeshFigures, CubesThatGoThroughEachOtherAreFound) {
   EXPECT_NE(trouble_of(*figures)->find("goes through itself"), std::string::npos);
 }
 
+TriangleMesh inside_out(TriangleMesh mesh) {
+  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+  return mesh;
+}
+
+TEST(MeshFigures, APieceThatIsInsideOutIsFound) {
+  const auto figures = measure_mesh(both(cube(10), inside_out(cube(5, {20, 0, 0}))));
+  ASSERT_TRUE(figures);
+  EXPECT_EQ(figures->inverted_components, 1U);
+  ASSERT_TRUE(trouble_of(*figures));
+  EXPECT_NE(trouble_of(*figures)->find("1 of its pieces are inside out"), std::string::npos);
+  EXPECT_GE(figures->inverted_at_mm.x(), 20);
+}
+
+TEST(MeshFigures, AHollowAndWhatLiesInItAreNoTrouble) {
+  const TriangleMesh hollow = both(cube(10), inside_out(cube(6, {2, 2, 2})));
+  const auto figures = measure_mesh(both(hollow, cube(2, {4, 4, 4})));
+  ASSERT_TRUE(figures);
+  EXPECT_EQ(figures->components, 3U);
+  EXPECT_EQ(figures->inverted_components, 0U);
+  EXPECT_FALSE(trouble_of(*figures));
+  const auto inverted = measure_mesh(both(hollow, inside_out(cube(2, {4, 4, 4}))));
+  ASSERT_TRUE(inverted);
+  EXPECT_EQ(inverted->inverted_components, 1U) << "nothing is left to be hollow within a hollow";
+}
+
 TEST(MeshFigures, AHoleIsFound) {
   TriangleMesh open = cube(10);
   open.triangles.pop_back();
