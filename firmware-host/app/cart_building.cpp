@@ -123,6 +123,7 @@ void Cart::State::build_stages() {
       lanes);
   painting =
       std::make_unique<PainterStage>(PainterStage::Parts{.painter = *painter,
+                                                         .clock = setup.clock,
                                                          .lanes = lanes,
                                                          .patches = patches,
                                                          .captures = captures,

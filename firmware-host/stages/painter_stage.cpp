@@ -5,6 +5,7 @@ namespace orcart {
 
 PainterStage::PainterStage(const Parts& parts)
     : painter_(parts.painter),
+      clock_(parts.clock),
       lanes_(parts.lanes),
       patches_(parts.patches),
       captures_(parts.captures),
@@ -24,7 +25,7 @@ void PainterStage::leave_thread() noexcept {
 StepReport PainterStage::step(Instant now) noexcept {
   StepReport report;
   if (is_carried_) {
-    go_on(now);
+    go_on();
     report.items = 1;
   }
   PaintOrder order;
@@ -33,7 +34,7 @@ StepReport PainterStage::step(Instant now) noexcept {
     handle(order, now);
     ++report.items;
   }
-  upload_newest(now);
+  upload_newest();
   report.worked = report.items > 0;
   report.carried = is_carried_;
   return report;
@@ -107,7 +108,7 @@ void PainterStage::paint(const PaintOrder& order, Instant now) noexcept {
   if (!last) return;
   is_carried_ = report.carried;
   carried_ = order;
-  if (!report.carried) painted(order, report.painted, now);
+  if (!report.carried) painted(order, report.painted);
 }
 
 void PainterStage::refuse(const PaintOrder& order, Instant now) noexcept {
@@ -117,15 +118,15 @@ void PainterStage::refuse(const PaintOrder& order, Instant now) noexcept {
   done_with(order.frame.buffer);
 }
 
-void PainterStage::go_on(Instant now) noexcept {
+void PainterStage::go_on() noexcept {
   (void)painter_.upload(carried_.frame.image);  // was taken once
   upload_due_ = have_newest_;
   is_carried_ = painter_.paint_more().carried;
-  if (!is_carried_) painted(carried_, true, now);
+  if (!is_carried_) painted(carried_, true);
 }
 
 // A picture that shows no surface, as of a calibration board, is a capture all the same.
-void PainterStage::painted(const PaintOrder& order, bool on_surface, Instant now) noexcept {
+void PainterStage::painted(const PaintOrder& order, bool on_surface) noexcept {
   const bool new_unit = unit_count_ == 0 || units_[unit_count_ - 1].number != order.request.unit;
   if (new_unit) {
     if (unit_count_ == units_.size()) {
@@ -147,7 +148,7 @@ void PainterStage::painted(const PaintOrder& order, bool on_surface, Instant now
                        .mid_exposure = order.frame.mid_exposure(),
                        .matched_at = order.matched_at,
                        .mapped_at = order.mapped_at,
-                       .painted_at = now,
+                       .painted_at = clock_.now(),
                        .X_MC = order.X_MC,
                        .turn_rad = order.turn_rad,
                        .pose_kind = order.pose_kind,
@@ -186,7 +187,7 @@ void PainterStage::done_with(std::uint32_t buffer) noexcept {
   if (holds_[buffer] > 0 && --holds_[buffer] == 0) (void)lanes_.frames_home.try_push(buffer);
 }
 
-void PainterStage::upload_newest(Instant now) noexcept {
+void PainterStage::upload_newest() noexcept {
   if (!upload_due_) return;
   upload_due_ = false;
   if (!painter_.upload(newest_.image)) return;  // the one before stays, and grows old
@@ -194,7 +195,7 @@ void PainterStage::upload_newest(Instant now) noexcept {
   state_.newest = {.sequence = newest_.sequence,
                    .mid_exposure = newest_.mid_exposure(),
                    .dequeued_at = newest_.dequeued_at,
-                   .uploaded_at = now};
+                   .uploaded_at = clock_.now()};
   state_.newest_exposed = newest_.exposure_end;
   state_.newest_is_new = true;
 }

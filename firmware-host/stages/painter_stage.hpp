@@ -10,6 +10,7 @@
 #include "firmware-host/stages/frame_ledger.hpp"
 #include "firmware-host/stages/lanes.hpp"
 #include "firmware-host/stages/view_errors.hpp"
+#include "realtime/kernel/clock.hpp"
 #include "realtime/kernel/stage.hpp"
 #include "render/atlas/painter.hpp"
 #include "render/egl/context.hpp"
@@ -37,6 +38,7 @@ class PainterStage final : public Stage {
  public:
   struct Parts {
     Painter& painter;
+    const Clock& clock;
     Lanes& lanes;
     std::vector<CutoutPatch>& patches;
     Ledger<CaptureRecord>& captures;
@@ -61,14 +63,15 @@ class PainterStage final : public Stage {
   void show(const CapturedFrame& frame) noexcept;
   void paint(const PaintOrder& order, Instant now) noexcept;
   void refuse(const PaintOrder& order, Instant now) noexcept;
-  void go_on(Instant now) noexcept;
-  void painted(const PaintOrder& order, bool on_surface, Instant now) noexcept;
+  void go_on() noexcept;
+  void painted(const PaintOrder& order, bool on_surface) noexcept;
   void fail(const PaintOrder& order, Instant now) noexcept;
   void take_back(Instant now) noexcept;
   void done_with(std::uint32_t buffer) noexcept;
-  void upload_newest(Instant now) noexcept;
+  void upload_newest() noexcept;
 
   Painter& painter_;
+  const Clock& clock_;
   Lanes& lanes_;
   std::vector<CutoutPatch>& patches_;
   Ledger<CaptureRecord>& captures_;

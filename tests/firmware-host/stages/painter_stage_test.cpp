@@ -35,8 +35,9 @@ class PainterStageTest : public ::testing::Test {
   }
   void push(const PaintOrder& order) {
     ASSERT_TRUE(lanes_.orders.try_push(order));
-    now_ += 10ms;
-    stage_.step(now_);
+    const Instant began = clock_.now();
+    clock_.advance_by(10ms);  // what a step takes
+    stage_.step(began);
   }
   /// As a double press does whose first press was `unit`.
   void take_back(std::uint32_t unit) {
@@ -51,17 +52,18 @@ class PainterStageTest : public ::testing::Test {
     shared_context();
     return std::move(*Painter::create(wall_, layout_, scope_, {}));
   }();
+  SimulatedClock clock_;
   Lanes lanes_{small_lanes()};
   std::vector<CutoutPatch> patches_{4};
   Ledger<CaptureRecord> captures_{64};
   PainterStage stage_{{.painter = painter_,
+                       .clock = clock_,
                        .lanes = lanes_,
                        .patches = patches_,
                        .captures = captures_,
                        .buffer_count = kBuffers}};
   std::array<scenes::Rgba, kBuffers> pictures_{};
   std::uint32_t frames_ = 0;
-  Instant now_ = instant_from_nanos(0);
 };
 
 TEST_F(PainterStageTest, TakesBackACaptureThatShowedNoSurfaceAndNoOther) {
@@ -106,6 +108,13 @@ TEST_F(PainterStageTest, LetsGoWhatComesOfAUnitThatWasTakenBack) {
   EXPECT_EQ(all_of(lanes_.patches_home).size(), 4u);
   paint(4, 200);
   EXPECT_NE(painting(), first);
+}
+
+TEST_F(PainterStageTest, SaysWhenSomethingIsPaintedNotWhenItsStepBegan) {
+  paint(1, 60);
+  paint(2, 120);
+  EXPECT_EQ(captures_.at(1).painted_at, clock_.now());
+  EXPECT_EQ(stage_.state().newest.uploaded_at, clock_.now() - 10ms) << "shown with the order before";
 }
 
 TEST_F(PainterStageTest, RefusesAPictureThatIsNotTheScopesAndPaintsNoOtherInItsPlace) {

@@ -50,8 +50,12 @@ class PanelStageTest : public ::testing::Test {
   std::vector<CutoutPatch> patches_{1};
   Ledger<FrameRecord> frames_{16};
   Ledger<CaptureRecord> captures_{16};
-  PainterStage painting_{
-      {.painter = painter_, .lanes = lanes_, .patches = patches_, .captures = captures_, .buffer_count = 1}};
+  PainterStage painting_{{.painter = painter_,
+                          .clock = clock_,
+                          .lanes = lanes_,
+                          .patches = patches_,
+                          .captures = captures_,
+                          .buffer_count = 1}};
   PanelStage stage_{{.panel = panel_,
                      .screen = screen_,
                      .painter = painter_,
