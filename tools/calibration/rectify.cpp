@@ -2,6 +2,8 @@
 #include "tools/calibration/rectify.hpp"
 #include "tools/calibration/load_picture.hpp"
 
+#include <map>
+
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -22,10 +24,37 @@ void fill_table(const ScopeModel& scope, cv::Mat& table) {
     }
 }
 
+std::filesystem::path straightened(const std::filesystem::path& image, const std::filesystem::path& folder) {
+  return folder / (image.stem().string() + ".png");
+}
+
+/// No picture may take the place of one that is read, or of another's answer.
+Result<void> check_places(const std::vector<std::filesystem::path>& images,
+                          const std::filesystem::path& folder) {
+  const auto place = [](const std::filesystem::path& file) {
+    std::error_code unreadable;
+    const auto whole = std::filesystem::weakly_canonical(file, unreadable);
+    return unreadable ? file : whole;
+  };
+  std::map<std::filesystem::path, std::filesystem::path> read, written;
+  for (const auto& image : images) read.emplace(place(image), image);
+  for (const auto& image : images) {
+    const auto out = place(straightened(image, folder));
+    if (const auto lost = read.find(out); lost != read.end())
+      return fail(lost->second.string() + ": would be written over by the rectified " + image.string() +
+                  "; another folder is accepted");
+    if (const auto [other, alone] = written.emplace(out, image); !alone)
+      return fail(image.string() + " and " + other->second.string() + " would both become " + out.string() +
+                  "; pictures of different names are accepted");
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<void> rectify(const std::vector<std::filesystem::path>& images, const ScopeModel& scope,
                      const std::filesystem::path& folder) {
+  if (auto apart = check_places(images, folder); !apart) return apart;
   std::vector<cv::Mat> pictures;
   for (const auto& image : images) {
     pictures.push_back(load_picture(image));
@@ -47,8 +76,9 @@ Result<void> rectify(const std::vector<std::filesystem::path>& images, const Sco
     cv::remap(pictures[i], straight, table, cv::noArray(), cv::INTER_LINEAR);
     std::vector<uchar> bytes;
     cv::imencode(".png", straight, bytes);
-    const auto file = folder / (images[i].stem().string() + ".png");
-    if (auto written = write_whole_file(file, std::as_bytes(std::span(bytes))); !written) return written;
+    if (auto written = write_whole_file(straightened(images[i], folder), std::as_bytes(std::span(bytes)));
+        !written)
+      return written;
   }
   return {};
 }

@@ -9,8 +9,8 @@
 
 namespace orcart {
 
-/// Writes NAME.png into `folder` for every image. Refuses pictures that are not the scope's size before it
-/// writes any.
+/// Writes NAME.png into `folder` for every image. Before it writes any it refuses pictures that are not
+/// the scope's size, and names by which one would take another's place, or that of a picture read.
 Result<void> rectify(const std::vector<std::filesystem::path>& images, const ScopeModel& scope,
                      const std::filesystem::path& folder);
 
