@@ -8,9 +8,13 @@
 
 namespace orcart::checks {
 
+/// Triangles with three corners in a line, which would leave a slit if they were dropped, share out the
+/// neighbour at their longest side; says how many found one.
+std::size_t flip_slivers(TriangleMesh& mesh);
 /// Removes triangles with a repeated vertex or no area; says how many.
 std::size_t drop_degenerate_triangles(TriangleMesh& mesh);
-/// Every edge belongs to exactly two triangles, which run along it in opposite directions.
+/// Every edge belongs to exactly two triangles, which run along it in opposite directions. A triangle with a
+/// repeated vertex has no edges.
 bool is_closed(const TriangleMesh& mesh);
 /// How many edges do not: 0 where it is closed.
 std::size_t unpaired_edges(const TriangleMesh& mesh);

@@ -51,7 +51,8 @@ Result<Space> space_of(const ParsedSurface& surface, std::optional<Space> where_
 /// LPS and RAS differ by half a turn about the vertical: both axes of the horizontal plane change sign.
 void convert_to_lps(Space space, TriangleMesh& mesh) {
   if (space == Space::lps) return;
-  for (Eigen::Vector3f& vertex : mesh.vertices_mm) vertex.head<2>() *= -1.0F;
+  for (Eigen::Vector3f& vertex : mesh.vertices_mm)
+    vertex.head<2>() = -vertex.head<2>().array() + 0.0F;  // 0 stays 0, and is no -0
 }
 
 std::string shown(const Eigen::Vector3f& vertex) {
@@ -99,13 +100,17 @@ Result<Surface> make_surface(TriangleMesh mesh, const std::string& name, Surface
   const auto note = [&](const std::string& sentence) {
     if (notes != nullptr) notes->sentences.push_back(name + ": " + sentence);
   };
+  const bool was_closed = checks::is_closed(mesh);
+  const std::size_t slivers = checks::flip_slivers(mesh);
+  if (slivers > 0)
+    note(std::to_string(slivers) + " triangles without area lay along a neighbour and were joined with it");
   const std::size_t dropped = checks::drop_degenerate_triangles(mesh);
   if (dropped > 0) note(std::to_string(dropped) + " triangles without area were dropped");
   if (mesh.triangles.empty()) return fail(name + ": has no triangle with an area; at least one is expected");
   Surface surface{.mesh = std::move(mesh), .identity = {}, .closed = false};
   surface.closed = checks::is_closed(surface.mesh);
   if (!surface.closed) note("the surface is open: some edges do not have exactly two triangles");
-  if (surface.closed && checks::signed_volume_mm3(surface.mesh) < 0) {
+  if (was_closed && checks::signed_volume_mm3(surface.mesh) < 0) {
     for (auto& triangle : surface.mesh.triangles) std::swap(triangle[1], triangle[2]);
     note("the surface was inside out; its triangles were turned");
   }

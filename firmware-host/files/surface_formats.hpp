@@ -43,7 +43,9 @@ Result<ParsedSurface> parse_mz3(std::span<const std::byte> bytes, const std::str
 /// Takes what one comment line says: SPACE=..., and orcart's own `orcart hash|series|frame_of_reference ...`.
 void take_comment(std::string_view comment, ParsedSurface& surface);
 
-/// Fans a polygon into triangles; false where an index is beyond `vertex_count`.
+/// Cuts a polygon into triangles whose corners run as its own do: a fan from its first corner where all turns
+/// agree, and else ears clipped in its mean plane (Meisters 1975) until they do. What crosses itself, or has
+/// over 1000 corners, is fanned. False where an index is beyond `vertex_count`.
 bool append_polygon(std::span<const std::uint32_t> corners, std::size_t vertex_count, TriangleMesh& mesh);
 
 }  // namespace orcart

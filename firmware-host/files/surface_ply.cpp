@@ -1,4 +1,5 @@
 // PLY (Turk 1994): ascii and binary of either byte order, any order of properties, unknown ones skipped.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -34,6 +35,7 @@ class PlyParser {
     }
     if (normals_.size() == surface_.mesh.vertices_mm.size())
       surface_.normals = vote_on_winding(surface_.mesh, normals_);
+    if (has_seam_) return joined_along_seam();
     if (is_split_) merge_equal_vertices(surface_.mesh);
     return std::move(surface_);
   }
@@ -47,12 +49,14 @@ class PlyParser {
     const std::size_t most = faces ? kLargestTriangleCount : kLargestVertexCount;
     if ((faces || vertices) && element.count > most)
       return fail(name_ + ": " + said + "; up to " + std::to_string(most) + " are accepted");
+    has_seam_ = has_seam_ || is_seam(element);
     if (least == 0) return {};
     if (element.count > body.left() / least + 1)
       return fail(name_ + ": " + said + ", but only " + std::to_string(body.left()) +
                   " bytes follow; the file is cut short");
     if (vertices) return read_vertices(element, body);
     if (faces) return read_faces(element, body);
+    if (is_seam(element)) return read_seam(element, body);
     return skip(element, body);
   }
 
@@ -82,6 +86,37 @@ class PlyParser {
       for (const PlyProperty& property : element.properties)
         if (!skip_property(property, body)) return cut_short(element, i, body);
     return {};
+  }
+
+  /// Of a painted surface of our own: the vertices at the end repeat others, one record each says which.
+  static bool is_seam(const PlyElement& element) {
+    return element.name == "seam" && element.properties.size() == 1 &&
+           element.properties[0].name == "vertex" && !element.properties[0].count_type;
+  }
+
+  Result<void> read_seam(const PlyElement& element, PlyBody& body) {
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      const auto vertex = body.next(element.properties[0].type);
+      if (!vertex) return cut_short(element, i, body);
+      if (!(*vertex >= 0 && *vertex < static_cast<double>(kLargestVertexCount)))
+        return fail(name_ + ": its seam repeats vertex " + plain(*vertex) + ", which is not there");
+      repeated_.push_back(static_cast<std::uint32_t>(*vertex));
+    }
+    return {};
+  }
+
+  Result<ParsedSurface> joined_along_seam() {
+    TriangleMesh& mesh = surface_.mesh;
+    const std::size_t own = mesh.vertices_mm.size() - std::min(mesh.vertices_mm.size(), repeated_.size());
+    for (const std::uint32_t vertex : repeated_)
+      if (vertex >= own)
+        return fail(name_ + ": its seam repeats vertex " + std::to_string(vertex) + " of " +
+                    std::to_string(own) + "; it was changed after it was written, so export it again");
+    for (auto& triangle : mesh.triangles)
+      for (std::uint32_t& corner : triangle)
+        if (corner >= own) corner = repeated_[corner - own];
+    mesh.vertices_mm.resize(own);
+    return std::move(surface_);
   }
 
   static int normal_axis(const std::string& name) {
@@ -170,6 +205,8 @@ class PlyParser {
   ParsedSurface surface_;
   std::vector<std::uint32_t> corners_;
   std::vector<Eigen::Vector3f> normals_;
+  std::vector<std::uint32_t> repeated_;
+  bool has_seam_ = false;
   bool is_split_ = false;  ///< vertices hold places in a picture, and are repeated along its seams
 };
 

@@ -23,6 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::uintmax_t kLargestLinkedBytes = std::uintmax_t{2} << 30U;
+
 /// Files that appear together. What was staged and not published goes with it.
 class FileSet {
  public:
@@ -50,11 +52,20 @@ class FileSet {
   /// Where a file is to be written that only helps to make the others.
   fs::path scratch(const std::string& name) const { return staging_ / name; }
   Result<void> publish() const {
-    for (const std::string& name : names_)
+    for (const std::string& name : names_) {
       if (fs::is_directory(target_ / name))
         return fail((target_ / name).string() + ": is a folder; a file's name is expected");
+      if (fs::exists(target_ / name) && !fs::is_regular_file(target_ / name))
+        return fail((target_ / name).string() + ": is a device or a pipe; a file's name is expected");
+    }
     for (const std::string& name : names_) {
       std::error_code error;
+      if (fs::is_symlink(target_ / name)) {  // it may lead to another file system, which no rename reaches
+        const auto bytes = read_whole_file(staging_ / name, kLargestLinkedBytes);
+        if (!bytes) return tl::unexpected(bytes.error());
+        if (auto written = write_whole_file(target_ / name, *bytes); !written) return written;
+        continue;
+      }
       fs::rename(staging_ / name, target_ / name, error);
       if (error) return fail((target_ / name).string() + ": cannot be written: " + error.message());
     }
@@ -140,7 +151,9 @@ std::string ply_bytes(const TexturedSurface& textured, const std::string& png_na
       "\nproperty float x\nproperty float y\nproperty float z\n"
       "property float nx\nproperty float ny\nproperty float nz\n"
       "property float texture_u\nproperty float texture_v\nelement face " +
-      std::to_string(split.indices.size() / 3) + "\nproperty list uchar int vertex_indices\nend_header\n";
+      std::to_string(split.indices.size() / 3) + "\nproperty list uchar int vertex_indices\nelement seam " +
+      std::to_string(split.vertex_of.size() - textured.surface.mesh.vertices_mm.size()) +
+      "\nproperty int vertex\nend_header\n";
   const std::vector<Eigen::Vector3f> normals = angle_weighted_normals(textured.surface.mesh);
   for (std::size_t v = 0; v < split.vertex_of.size(); ++v) {
     append_bytes(text, textured.surface.mesh.vertices_mm[split.vertex_of[v]].data(), 3);
@@ -151,6 +164,8 @@ std::string ply_bytes(const TexturedSurface& textured, const std::string& png_na
     text += '\3';
     append_bytes(text, &split.indices[i], 3);
   }
+  for (std::size_t v = textured.surface.mesh.vertices_mm.size(); v < split.vertex_of.size(); ++v)
+    append_bytes(text, &split.vertex_of[v], 1);
   return text;
 }
 
@@ -215,6 +230,16 @@ Result<void> write_textured(const fs::path& file, const TexturedSurface& texture
     return written;
   if (auto written = write_set(set, file, textured, png); !written) return written;
   return set.publish();
+}
+
+std::vector<fs::path> textured_files(const fs::path& file) {
+  std::vector<fs::path> files = {file};
+  const std::vector<std::string> beside = file.extension() == ".obj"
+                                              ? std::vector<std::string>{".mtl", ".png"}
+                                          : file.extension() == ".ply" ? std::vector<std::string>{".png"}
+                                                                       : std::vector<std::string>{};
+  for (const std::string& extension : beside) files.push_back(fs::path(file).replace_extension(extension));
+  return files;
 }
 
 }  // namespace orcart

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -24,10 +25,13 @@ struct TexturedSurface {
 
 /// `file` ends in .obj (NAME.mtl and NAME.png come beside it) or .ply (NAME.png, named in a
 /// TextureFile comment; the places are the vertices' texture_u and texture_v, which most programs know:
-/// vertices on a seam are repeated, and merged again by read_surface) or .glb (one file, see
-/// textured_glb.hpp). The picture is opaque: what has no paint is grey. Millimetres, LPS, said in a comment
-/// with the surface's identity. All files are made ready before the first appears under its name; on an error
-/// none does.
+/// vertices on a seam are repeated behind the surface's own, an element `seam` says which one each repeats,
+/// and read_surface joins them again) or .glb (one file, see textured_glb.hpp). The picture is opaque: what
+/// has no paint is grey. Millimetres, LPS, said in a comment with the surface's identity. All files are made
+/// ready before the first appears under its name; on an error none does.
 Result<void> write_textured(const std::filesystem::path& file, const TexturedSurface& textured);
+
+/// The names of all files that write_textured makes of `file`, itself first.
+std::vector<std::filesystem::path> textured_files(const std::filesystem::path& file);
 
 }  // namespace orcart

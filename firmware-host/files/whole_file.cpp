@@ -35,6 +35,17 @@ bool write_all(int fd, std::span<const std::byte> bytes) {
   return true;
 }
 
+/// A device or a pipe takes the bytes as it is. One that nobody reads is refused, where opening it would
+/// wait.
+Result<void> write_into(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+  const OpenFile open{::open(file.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)};
+  if (open.fd < 0 && errno == ENXIO) return fail(file.string() + ": cannot be written: nobody reads it");
+  if (open.fd < 0) return system_failure(file, "cannot be written");
+  ::fcntl(open.fd, F_SETFL, ::fcntl(open.fd, F_GETFL) & ~O_NONBLOCK);
+  if (!write_all(open.fd, bytes)) return system_failure(file, "cannot be written");
+  return {};
+}
+
 }  // namespace
 
 Result<std::vector<std::byte>> read_whole_file(const std::filesystem::path& file,
@@ -60,16 +71,32 @@ Result<std::vector<std::byte>> read_whole_file(const std::filesystem::path& file
   return bytes;
 }
 
+std::filesystem::path behind_links(const std::filesystem::path& file) {
+  constexpr int kMostLinks = 40;  // as Linux follows
+  std::filesystem::path place = file;
+  for (int link = 0; link < kMostLinks; ++link) {
+    std::error_code no_link;
+    const std::filesystem::path next = std::filesystem::read_symlink(place, no_link);
+    if (no_link) break;
+    place = place.parent_path() / next;
+  }
+  return place;
+}
+
 Result<void> write_whole_file(const std::filesystem::path& file, std::span<const std::byte> bytes) {
-  std::filesystem::path beside = file;
-  beside.replace_filename("." + file.filename().string() + ".part-" + std::to_string(::getpid()));
+  struct stat status {};
+  const bool there = ::stat(file.c_str(), &status) == 0;
+  if (there && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)) return write_into(file, bytes);
+  const std::filesystem::path target = behind_links(file);
+  std::filesystem::path beside = target;
+  beside.replace_filename("." + target.filename().string() + ".part-" + std::to_string(::getpid()));
   bool written = false;
   {
     const OpenFile open{::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
     if (open.fd < 0) return system_failure(file, "cannot be written");
     written = write_all(open.fd, bytes) && ::fsync(open.fd) == 0;
   }
-  if (written && ::rename(beside.c_str(), file.c_str()) == 0) return {};
+  if (written && ::rename(beside.c_str(), target.c_str()) == 0) return {};
   const auto failure = system_failure(file, "cannot be written");
   ::unlink(beside.c_str());
   return failure;

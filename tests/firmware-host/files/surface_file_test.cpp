@@ -2,10 +2,15 @@
 #include "firmware-host/files/surface_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
+#include "firmware-host/files/surface_checks.hpp"
+#include "firmware-host/files/surface_formats.hpp"
 #include "tests/firmware-host/files/surface_samples.hpp"
 #include "tests/firmware-host/files/temporary_folder.hpp"
 
@@ -104,6 +109,14 @@ TEST(SurfaceFile, ConvertsRasAsSlicerStatesIt) {
   EXPECT_EQ(surface->mesh.vertices_mm[1], Eigen::Vector3f(-1, 0, 0));
   EXPECT_EQ(surface->mesh.vertices_mm[2], Eigen::Vector3f(0, -2, 0));
   EXPECT_EQ(surface->mesh.vertices_mm[3], Eigen::Vector3f(0, 0, 3));
+}
+
+TEST(SurfaceFile, RasMakesNoMinusZero) {
+  const TemporaryFolder folder;
+  const auto surface = read_surface(folder.write("s.ply", ascii_ply("comment SPACE=RAS\n")));
+  ASSERT_TRUE(surface);
+  for (const auto& vertex : surface->mesh.vertices_mm)
+    for (const float coordinate : vertex) EXPECT_FALSE(coordinate == 0 && std::signbit(coordinate));
 }
 
 TEST(SurfaceFile, AsksForASpaceThatIsNotStatedUnlessTold) {
@@ -274,6 +287,113 @@ TEST(SurfaceFile, TellsThatASurfaceIsOpen) {
   EXPECT_FALSE(make_surface(mesh, "made", &notes)->closed);
   ASSERT_EQ(notes.sentences.size(), 1U);
   EXPECT_NE(notes.sentences[0].find("open"), std::string::npos);
+}
+
+TEST(SurfaceFile, AnInsideOutSphereWithRepeatedPolesIsClosedAndTurned) {
+  constexpr std::uint32_t kRings = 8, kSides = 12;
+  TriangleMesh sphere;
+  for (std::uint32_t r = 0; r <= kRings; ++r)
+    for (std::uint32_t s = 0; s < kSides; ++s) {
+      const double down = std::numbers::pi * r / kRings, around = 2 * std::numbers::pi * s / kSides;
+      const double across = r == 0 || r == kRings ? 0 : 10 * std::sin(down);  // a pole for each side
+      sphere.vertices_mm.push_back(
+          Eigen::Vector3d(across * std::cos(around), across * std::sin(around), 10 * std::cos(down))
+              .cast<float>());
+    }
+  for (std::uint32_t r = 0; r < kRings; ++r)
+    for (std::uint32_t s = 0; s < kSides; ++s) {
+      const std::uint32_t a = r * kSides + s, b = r * kSides + (s + 1) % kSides, c = a + kSides,
+                          d = b + kSides;
+      sphere.triangles.push_back({a, b, c});  // clockwise from outside
+      sphere.triangles.push_back({b, d, c});
+    }
+  SurfaceNotes notes;
+  const auto surface = finish_surface({.mesh = sphere, .space = "LPS"}, "sphere", &notes, std::nullopt);
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_TRUE(surface->closed);
+  EXPECT_GT(checks::signed_volume_mm3(surface->mesh), 3500);
+  EXPECT_EQ(surface->mesh.vertices_mm.size(), (kRings - 1) * kSides + 2);
+}
+
+TEST(SurfaceFile, ASliverAlongASideIsJoinedWithItsNeighbourNotTornOut) {
+  TriangleMesh mesh = tetrahedron();
+  mesh.vertices_mm.emplace_back(0.5F, 0.0F,
+                                0.0F);  // 4, between 0 and 1: one face knows it, a sliver the other
+  mesh.triangles = {{0, 2, 4}, {4, 2, 1}, {0, 4, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  ASSERT_TRUE(checks::is_closed(mesh));
+  for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);  // inside out
+  SurfaceNotes notes;
+  const auto surface = make_surface(mesh, "slit", &notes);
+  ASSERT_TRUE(surface);
+  EXPECT_TRUE(surface->closed);
+  EXPECT_NEAR(checks::signed_volume_mm3(surface->mesh), 1, 1e-6);
+  EXPECT_EQ(surface->mesh.triangles.size(), 6U);
+  ASSERT_EQ(notes.sentences.size(), 2U);
+  EXPECT_NE(notes.sentences[0].find("1 triangles without area lay along a neighbour"), std::string::npos);
+  const TriangleMesh again = surface->mesh;
+  EXPECT_EQ(make_surface(again, "again")->identity.hash, surface->identity.hash);
+}
+
+TEST(SurfaceFile, WhatIsClosedOnlyWithItsSliverIsStillTurned) {
+  TriangleMesh mesh = tetrahedron();
+  mesh.vertices_mm.emplace_back(0.0F, 0.0F,
+                                0.0F);  // 4 stands where 0 stands: no neighbour makes an area of it
+  mesh.triangles = {{0, 2, 1}, {4, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 1, 4}, {0, 4, 3}};
+  ASSERT_TRUE(checks::is_closed(mesh));
+  for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);
+  const auto surface = make_surface(mesh, "split");
+  ASSERT_TRUE(surface);
+  EXPECT_NEAR(checks::signed_volume_mm3(surface->mesh), 1, 1e-6);
+}
+
+double area_mm2(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    const Eigen::Vector3f ab = mesh.vertices_mm[t[1]] - mesh.vertices_mm[t[0]],
+                          ac = mesh.vertices_mm[t[2]] - mesh.vertices_mm[t[0]];
+    area += static_cast<double>(ab.cross(ac).norm()) / 2;
+  }
+  return area;
+}
+
+TEST(SurfaceFile, AConcavePolygonKeepsItsArea) {
+  const TemporaryFolder folder;
+  // A U, from each corner on and both ways around.
+  const std::vector<std::string> corners = {"0 0 5",   "60 0 5",  "60 50 5", "40 50 5",
+                                            "40 20 5", "20 20 5", "20 50 5", "0 50 5"};
+  constexpr double kArea = 60 * 50 - 20 * 30;
+  for (std::size_t first = 0; first < corners.size(); ++first)
+    for (const bool backwards : {false, true}) {
+      std::string obj = "# SPACE=LPS\n", face = "f",
+                  ply = ply_header("ascii", "comment SPACE=LPS\n", "8", "1"), list = "8";
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const std::size_t corner = (first + (backwards ? corners.size() - i : i)) % corners.size();
+        obj += "v " + corners[i] + "\n";
+        ply += corners[i] + "\n";
+        face += " " + std::to_string(corner + 1);
+        list += " " + std::to_string(corner);
+      }
+      for (const auto& file :
+           {folder.write("u.obj", obj + face + "\n"), folder.write("u.ply", ply + list + "\n")}) {
+        const auto surface = read_surface(file);
+        ASSERT_TRUE(surface) << surface.error().message;
+        EXPECT_NEAR(area_mm2(surface->mesh), kArea, 1e-3) << first << backwards;
+        EXPECT_EQ(surface->mesh.triangles.size(), 6U);
+        for (const auto& t : surface->mesh.triangles) {
+          const auto& v = surface->mesh.vertices_mm;
+          EXPECT_EQ((v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]]).z() > 0, !backwards);
+        }
+      }
+    }
+}
+
+TEST(SurfaceFile, APolygonWithACornerOnASideHasNoSliver) {
+  const TemporaryFolder folder;
+  const auto surface = read_surface(
+      folder.write("s.obj", "# SPACE=LPS\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4 5\n"));
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_EQ(surface->mesh.triangles.size(), 3U);
+  EXPECT_NEAR(area_mm2(surface->mesh), 4, 1e-6);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // Painted surfaces for other programs: complete sets with names that agree, or nothing.
 #include "firmware-host/files/textured_file.hpp"
 
+#include <sys/stat.h>
+
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -103,6 +105,40 @@ TEST(TexturedFile, APlyRepeatsTheVerticesOfASeamAndIsReadBackWithoutIt) {
   EXPECT_EQ(back->identity.hash, painted.surface.identity.hash);
 }
 
+TEST(TexturedFile, VerticesThatStandTogetherAndMinusZeroAreReadBackAsTheyWere) {
+  const TemporaryFolder folder;
+  TriangleMesh mesh;  // two triangles that touch in a point, of which each has a vertex, with two places each
+  mesh.vertices_mm = {{-0.0F, 0, 0}, {1, 0, 0},   {1, 1, -0.0F}, {0, 0, 0},
+                      {-1, 0, 0},    {-1, -1, 0}, {0, 1, 0},     {0, -1, 0}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}, {0, 2, 6}, {3, 5, 7}};
+  const Surface surface = *make_surface(std::move(mesh), "touching");
+  std::vector<std::array<Eigen::Vector2f, 3>> places;
+  for (int t = 0; t < 4; ++t) {
+    const float at = 0.2F * static_cast<float>(t);
+    places.push_back({Eigen::Vector2f{at, 0}, {at + 0.1F, 0}, {at + 0.1F, 0.5F}});
+  }
+  const std::vector<std::uint8_t> rgba(8, 255);
+  ASSERT_TRUE(write_textured(
+      folder / "painted.ply",
+      {.surface = surface, .corners_uv = places, .width_texels = 2, .height_texels = 1, .rgba = rgba}));
+  const auto back = read_surface(folder / "painted.ply");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->mesh.triangles, surface.mesh.triangles);
+  EXPECT_EQ(back->identity.hash, surface.identity.hash);
+}
+
+TEST(TexturedFile, ASeamThatNamesNoVertexIsRefused) {
+  const TemporaryFolder folder;
+  Painted painted;
+  painted.corners_uv[1][0] = {0.5F, 0.5F};
+  ASSERT_TRUE(write_textured(folder / "painted.ply", painted.textured()));
+  std::string ply = text_of(folder / "painted.ply");
+  ply[ply.size() - 4] = 4;  // the repeated vertex itself
+  EXPECT_FALSE(read_surface(folder.write("changed.ply", ply)));
+  for (std::size_t cut = 1; cut <= 4; ++cut)
+    EXPECT_FALSE(read_surface(folder.write("cut.ply", ply.substr(0, ply.size() - cut)))) << cut;
+}
+
 TEST(TexturedFile, LeavesNothingWhereItFails) {
   const TemporaryFolder folder;
   Painted painted;
@@ -120,6 +156,19 @@ TEST(TexturedFile, LeavesNothingWhereItFails) {
   EXPECT_FALSE(write_textured(folder / "other.ply", painted.textured()));
   EXPECT_FALSE(write_textured(folder / "no/such/folder.ply", Painted().textured()));
   EXPECT_EQ(folder.count(), 1U);
+}
+
+TEST(TexturedFile, ALinkStaysOneAndAPipeIsRefused) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "far");
+  std::filesystem::create_symlink("far/p.png", folder / "painted.png");
+  ASSERT_TRUE(write_textured(folder / "painted.ply", Painted().textured()));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "painted.png"));
+  EXPECT_TRUE(read_picture(folder / "far/p.png"));
+  ASSERT_EQ(::mkfifo((folder / "pipe.png").c_str(), 0600), 0);
+  EXPECT_FALSE(write_textured(folder / "pipe.ply", Painted().textured()));
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / "pipe.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "pipe.ply"));
 }
 
 TEST(TexturedFile, RefusesOtherFormats) {
