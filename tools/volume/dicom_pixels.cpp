@@ -5,7 +5,9 @@
 #include <gdcmSequenceOfFragments.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <optional>
 
@@ -52,6 +54,48 @@ std::vector<std::size_t> first_pieces(const gdcm::SequenceOfFragments& pieces, s
     firsts = std::move(by_start);
   if (!firsts.empty()) firsts.push_back(count);
   return firsts;
+}
+
+/// One of the byte planes of run-length pixels (PS3.5, annex G.3.1), as many bytes as there is room for.
+std::size_t unpack_plane(std::string_view packed, std::span<char> plane) {
+  std::size_t at = 0, done = 0;
+  while (at + 1 < packed.size() && done < plane.size()) {
+    const int control = static_cast<signed char>(packed[at++]);
+    if (control == -128) continue;
+    const std::size_t asked = static_cast<std::size_t>(control >= 0 ? control + 1 : 1 - control);
+    const std::size_t count = std::min(asked, plane.size() - done);
+    if (control >= 0 && count > packed.size() - at) break;
+    for (std::size_t i = 0; i < count; ++i) plane[done++] = packed[at + (control >= 0 ? i : 0)];
+    at += control >= 0 ? asked : 1;
+  }
+  return done;
+}
+
+/// Run-length pixels of one sample: a head of 64 bytes with the places of the planes, the highest byte's
+/// plane first. By hand, since GDCM aborts on damaged ones.
+bool unpack_run_lengths(std::string_view packed, std::size_t bytes_each, std::span<char> pixels) {
+  constexpr std::size_t kHead = 64;
+  if (packed.size() < kHead) return false;
+  std::array<std::uint32_t, 16> head{};
+  std::memcpy(head.data(), packed.data(), kHead);
+  if (head[0] != bytes_each) return false;
+  std::vector<char> plane(pixels.size() / bytes_each);
+  for (std::size_t i = 0; i < bytes_each; ++i) {
+    const std::size_t start = head[i + 1], end = i + 1 < bytes_each ? head[i + 2] : packed.size();
+    if (start < kHead || start > end || end > packed.size()) return false;
+    if (unpack_plane(packed.substr(start, end - start), plane) != plane.size()) return false;
+    for (std::size_t pixel = 0; pixel < plane.size(); ++pixel)
+      pixels[pixel * bytes_each + bytes_each - 1 - i] = plane[pixel];
+  }
+  return true;
+}
+
+std::string joined(const gdcm::SequenceOfFragments& pieces) {
+  std::string all;
+  for (std::size_t i = 0; i < pieces.GetNumberOfFragments(); ++i)
+    if (const gdcm::ByteValue* bytes = pieces.GetFragment(i).GetByteValue(); bytes != nullptr)
+      all.append(bytes->GetPointer(), bytes->GetLength());
+  return all;
 }
 
 }  // namespace
@@ -133,7 +177,12 @@ Result<void> DicomPixels::take(const DicomSlice& slice, float* values) const {
   frame.SetDimension(1, static_cast<unsigned>(slice.rows));
   frame.SetDataElement(*packed);
   std::vector<char> buffer(std::max<std::size_t>(frame.GetBufferLength(), bytes));
-  if (frame.GetBufferLength() < bytes || !frame.GetBuffer(buffer.data())) return parts_->cut_short();
+  const gdcm::SequenceOfFragments* pieces = packed->GetSequenceOfFragments();
+  const bool runs = frame.GetTransferSyntax() == gdcm::TransferSyntax::RLELossless && pieces != nullptr;
+  const bool unpacked = runs ? unpack_run_lengths(joined(*pieces), format.GetBitsAllocated() / 8,
+                                                  std::span(buffer).first(bytes))
+                             : frame.GetBufferLength() >= bytes && frame.GetBuffer(buffer.data());
+  if (!unpacked) return parts_->cut_short();
   const VoxelEncoding encoding{
       .type = voxel_type(format), .slope = slice.slope, .intercept = slice.intercept};
   std::vector<float> numbers;

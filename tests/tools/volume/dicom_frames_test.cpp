@@ -228,6 +228,20 @@ TEST(DicomFrames, CutAnywhereAreRefused) {
   }
 }
 
+TEST(DicomFrames, WhoseRunLengthsAreDamagedAreRefused) {
+  EnhancedSample sample = enhanced_series(3);
+  sample.run_length = true;
+  const std::string whole = sample.bytes();
+  constexpr std::size_t kEndOfPieces = 8, kPlanes = 28, kHead = 64;
+  const std::size_t head = whole.size() - kEndOfPieces - kPlanes - kHead;
+  ASSERT_EQ(whole[head], 2);
+  for (const std::size_t damaged : {0, 4, 5, 8}) {  // the planes' count and their places
+    std::string bytes = whole;
+    bytes[head + damaged] = 120;
+    expect_refused(read(bytes), "cannot be unpacked or are cut short");
+  }
+}
+
 TEST(DicomFrames, DamagedAnywhereGiveAVolumeOrASentence) {
   EnhancedSample sample = enhanced_series(3);
   std::mt19937 random(7);
