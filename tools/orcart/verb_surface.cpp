@@ -20,8 +20,8 @@ namespace orcart {
 namespace {
 
 constexpr const char* kFooter =
-    "DICOM (a folder of slices, or an enhanced multi-frame file), NIfTI, NRRD or MetaImage: the region is\n"
-    "every voxel connected to a seed whose "
+    "DICOM (a folder of slices, or an enhanced multi-frame file), NIfTI, NRRD, MetaImage or\n"
+    "FreeSurfer's MGH and MGZ: the region is every voxel connected to a seed whose\n"
     "intensity lies from LO to HI (Hounsfield in CT). Seeds are millimetres in DICOM's LPS (x to the "
     "patient's left,\n"
     "y to the back, z up); with --seed-space RAS they are as MNI atlases and NIfTI viewers give them.\n"
@@ -189,8 +189,9 @@ void add_surface(CLI::App& app, int& exit_code) {
   CLI::App* verb = app.add_subcommand("surface", "Make the surface to paint on from a CT, an MR or a mesh");
   auto arguments = std::make_shared<Arguments>();
   verb->footer(kFooter);
-  verb->add_option("input", arguments->input,
-                   "a DICOM folder or enhanced file, NIfTI, NRRD, MetaImage; or PLY, STL, OBJ, mz3, VTK, VTP")
+  verb->add_option(
+          "input", arguments->input,
+          "a DICOM folder or enhanced file, NIfTI, NRRD, MetaImage, MGH; or PLY, STL, OBJ, mz3, VTK, VTP")
       ->required();
   verb->add_option("--space", arguments->space, "patient space of a file that states none: LPS or RAS")
       ->check(CLI::IsMember({"LPS", "RAS"}));

@@ -1,4 +1,4 @@
-// The volume formats, each from its bytes to a volume: NIfTI, NRRD and MetaImage.
+// The volume formats, each from its bytes to a volume: NIfTI, NRRD, MetaImage and MGH.
 #pragma once
 
 #include <optional>
@@ -20,10 +20,12 @@ struct VolumeSource {
 bool is_nifti(std::span<const std::byte> bytes);
 bool is_nrrd(std::span<const std::byte> bytes);
 bool is_meta_image(std::span<const std::byte> bytes);
+bool is_mgh(std::span<const std::byte> bytes);
 
 Result<Volume> parse_nifti(const VolumeSource& source);
 Result<Volume> parse_nrrd(const VolumeSource& source);
 Result<Volume> parse_meta_image(const VolumeSource& source);
+Result<Volume> parse_mgh(const VolumeSource& source);
 
 /// RAS and LPS differ by half a turn about the vertical.
 void convert_to_lps(Space space, VoxelLattice& lattice);

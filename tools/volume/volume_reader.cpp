@@ -36,8 +36,9 @@ Result<Volume> read_file(const VolumeRequest& request) {
   if (is_nrrd(*bytes)) return parse_nrrd(source);
   if (is_nifti(*bytes)) return parse_nifti(source);
   if (is_meta_image(*bytes)) return parse_meta_image(source);
+  if (is_mgh(*bytes)) return parse_mgh(source);
   return fail(name +
-              ": is no volume that says what it holds; DICOM, NIfTI, NRRD and MetaImage are "
+              ": is no volume that says what it holds; DICOM, NIfTI, NRRD, MetaImage and MGH are "
               "accepted (voxels alone need a header beside them: a .mhd with NDims, DimSize, ElementType, "
               "ElementSpacing, Offset, TransformMatrix and ElementDataFile)");
 }

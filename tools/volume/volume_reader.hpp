@@ -1,4 +1,4 @@
-// Reads a CT or MR volume, whatever it comes as: DICOM, NIfTI, NRRD or MetaImage.
+// Reads a CT or MR volume, whatever it comes as: DICOM, NIfTI, NRRD, MetaImage or MGH.
 #pragma once
 
 #include <filesystem>
