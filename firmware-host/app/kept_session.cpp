@@ -51,6 +51,16 @@ std::string captures(std::uint64_t count) {
 
 }  // namespace
 
+std::filesystem::path session_file(const std::filesystem::path& named, std::string utc) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(named, error)) return named;
+  std::erase(utc, ':');  // no letter of a file name on what a session may be copied to
+  std::filesystem::path file = named / (utc + ".orcart");
+  for (int i = 2; i <= 1000 && std::filesystem::exists(file, error); ++i)
+    file = named / (utc + "-" + std::to_string(i) + ".orcart");
+  return file;
+}
+
 Result<std::unique_ptr<KeptSession>> KeptSession::create(const Request& request) {
   const CartConfig& config = request.config;
   const auto cart = text_of(config.file);
@@ -63,15 +73,17 @@ Result<std::unique_ptr<KeptSession>> KeptSession::create(const Request& request)
   if (config.time_deviation_s) deviation = from_seconds(*config.time_deviation_s);
   const auto turn_deviation = turn_deviation_of(config, request.patient.scope);
   if (!turn_deviation) return tl::unexpected(turn_deviation.error());
-  auto writer = SessionWriter::create(
-      request.file, {.application_version = ORCART_VERSION,
-                     .config_hash = hash_of(*cart),
-                     .started_utc = utc_now(),
-                     .started_at = request.started_at,
-                     .tracker_against_video = config.tracker_against_video,
-                     .tracker_against_video_deviation = deviation,
-                     .turn_rad = config.turn == TurnSource::told ? config.turn_rad.value_or(0) : 0,
-                     .turn_deviation_rad = *turn_deviation});
+  const std::string started_utc = utc_now();
+  auto writer =
+      SessionWriter::create(session_file(request.file, started_utc),
+                            {.application_version = ORCART_VERSION,
+                             .config_hash = hash_of(*cart),
+                             .started_utc = started_utc,
+                             .started_at = request.started_at,
+                             .tracker_against_video = config.tracker_against_video,
+                             .tracker_against_video_deviation = deviation,
+                             .turn_rad = config.turn == TurnSource::told ? config.turn_rad.value_or(0) : 0,
+                             .turn_deviation_rad = *turn_deviation});
   if (!writer) return tl::unexpected(writer.error());
   const auto picture_bytes =
       packed_bytes(config.camera.format, config.camera.width_px, config.camera.height_px);

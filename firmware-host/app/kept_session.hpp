@@ -13,12 +13,17 @@
 
 namespace orcart {
 
+/// `named` itself, or, where that is a folder, a free name in it after `utc` (2026-01-31T10:20:30Z becomes
+/// 2026-01-31T102030Z.orcart; more of one second are told apart by -2 to -1000): the same words start a cart
+/// again.
+std::filesystem::path session_file(const std::filesystem::path& named, std::string utc);
+
 /// Outlives the cart that borrows stage(). The thread that makes it finishes it. One that was never finished
 /// and kept nothing takes its file away again.
 class KeptSession {
  public:
   struct Request {
-    const std::filesystem::path& file;
+    const std::filesystem::path& file;  ///< or a folder, see session_file()
     const CartConfig& config;
     const Patient& patient;
     Instant started_at{};

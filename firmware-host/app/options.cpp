@@ -56,7 +56,10 @@ tl::expected<Options, int> read_options(int argc, char** argv) {
          "degrees by which the picture has turned since the passport was made (orcart turn tells it by the "
          "notch)")
       ->check(CLI::Range(-360.0, 360.0));
-  app.add_option("--session", options.session, "keep every capture in this *.orcart file");
+  app.add_option("--session", options.session,
+                 "keep every capture in this *.orcart file, which must not exist yet; in a folder, in a new "
+                 "one named by "
+                 "the time of the start");
   app.add_option("--report", options.report_dir,
                  "write pictures, report.html and report.json into this folder");
   app.add_option(

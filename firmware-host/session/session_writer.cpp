@@ -22,7 +22,8 @@ namespace {
 Result<void> create_private_file(const std::filesystem::path& file) {
   const int fd = open(file.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (fd < 0 && errno == EEXIST)
-    return fail(file.string() + " exists already; a session is never written over: name another file");
+    return fail(file.string() +
+                " exists already; a session is never written over: name another file, or a folder");
   if (fd < 0)
     return fail(file.string() + ": cannot create the session file (" + std::strerror(errno) +
                 "); name a file in a folder that exists and may be written to");

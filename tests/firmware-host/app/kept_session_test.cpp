@@ -31,6 +31,22 @@ TEST_F(KeptSessionTest, RefusesAFileThatExistsAndLeavesItAlone) {
   EXPECT_EQ(text_of(file), "somebody's");
 }
 
+TEST_F(KeptSessionTest, MakesANewFileInAFolderAtEachStart) {
+  file = folder / "";
+  const std::string utc = "2026-01-31T10:20:30Z";
+  EXPECT_EQ(session_file(folder / "new.orcart", utc), folder / "new.orcart");
+  EXPECT_EQ(session_file(file, utc), folder / "2026-01-31T102030Z.orcart");
+  folder.write("2026-01-31T102030Z.orcart", "the first start's");
+  EXPECT_EQ(session_file(file, utc), folder / "2026-01-31T102030Z-2.orcart") << "again within a second";
+
+  const auto first = create();
+  ASSERT_TRUE(first) << first.error().message;
+  const auto second = create();
+  ASSERT_TRUE(second) << second.error().message;
+  EXPECT_NE((*first)->sentence(), (*second)->sentence());
+  EXPECT_EQ(text_of(folder / "2026-01-31T102030Z.orcart"), "the first start's");
+}
+
 TEST_F(KeptSessionTest, TakesItsFileAwayWhereTheRunNeverCameAbout) {
   ASSERT_TRUE(create());
   EXPECT_EQ(folder.count(), 0u);
