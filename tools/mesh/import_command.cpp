@@ -1,9 +1,12 @@
 // Reads, checks, thins out, measures and writes a surface.
 #include "tools/mesh/import_command.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <chrono>
 #include <cstdio>
 
 #include <Eigen/Geometry>
@@ -25,6 +28,17 @@ Result<void> check_unit(const TriangleMesh& mesh, const std::string& name) {
   std::snprintf(text.data(), text.size(), "%.3g", static_cast<double>(across));
   return fail(name + ": is " + text.data() +
               " mm across; that looks like metres, and millimetres are accepted");
+}
+
+/// A page's folder may be there or is made; what it lies in must be a folder that lets it.
+Result<void> check_page(const std::filesystem::path& page) {
+  std::error_code error;
+  std::filesystem::path there = page;
+  while (!there.empty() && !std::filesystem::exists(there, error)) there = there.parent_path();
+  if (page.empty() || (there.empty() && ::access(".", W_OK) == 0)) return {};
+  if (std::filesystem::is_directory(there, error) && ::access(there.c_str(), W_OK) == 0) return {};
+  return fail((there.empty() ? std::string(".") : there.string()) +
+              ": is no folder that can be written into; --page is to be one, or to be made in one");
 }
 
 Result<void> write_levels(const Surface& surface, const SurfaceOutput& output, SurfaceReport& report) {
@@ -74,7 +88,7 @@ Result<void> check_output(const SurfaceOutput& output) {
   for (const auto& folder : {output.out.parent_path(), charts.parent_path()})
     if (!folder.empty() && !std::filesystem::is_directory(folder))
       return fail(folder.string() + ": is no folder; --out and --charts are to lie in one that is there");
-  return {};
+  return check_page(output.page);
 }
 
 Result<void> write_surface(const Surface& surface, const SurfaceOutput& output, SurfaceReport& report) {
@@ -98,6 +112,7 @@ Result<SurfaceReport> import_surface(const ImportCommand& command, const Surface
                                      const SurfaceProgress& progress) {
   if (auto sound = check_output(command.output); !sound) return tl::unexpected(sound.error());
   const std::string name = command.input.string();
+  const auto began = std::chrono::steady_clock::now();
   progress(1, 3, "reading " + name);
   SurfaceNotes notes;
   auto surface = reader(command.input, &notes, command.where_unstated);
@@ -122,6 +137,7 @@ Result<SurfaceReport> import_surface(const ImportCommand& command, const Surface
   progress(3, 3, "measuring and writing " + command.output.out.string());
   if (auto written = write_surface(*surface, command.output, report); !written)
     return tl::unexpected(written.error());
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   if (command.output.page.empty()) return report;
   auto pictures = pictures_of(surface->mesh);
   if (!pictures) return tl::unexpected(pictures.error());

@@ -43,7 +43,8 @@ using SurfaceReader =
 Result<SurfaceReport> import_surface(const ImportCommand& command, const SurfaceReader& reader,
                                      const SurfaceProgress& progress);
 
-/// Refuses a name that is no PLY's and a folder that is not there, before any work is done.
+/// Refuses a name that is no PLY's, a folder that is not there and a page that cannot be one, before any work
+/// is done.
 Result<void> check_output(const SurfaceOutput& output);
 /// Writes the surface, its levels and the page, and completes the report with them.
 Result<void> write_surface(const Surface& surface, const SurfaceOutput& output, SurfaceReport& report);

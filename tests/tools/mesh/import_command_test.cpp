@@ -94,6 +94,28 @@ TEST(ImportCommand, LeavesNoFileWhereTheSpaceIsNotKnown) {
   EXPECT_FALSE(std::filesystem::exists(folder / "cube.ply"));
 }
 
+TEST(ImportCommand, APageThatCannotBeOneIsRefusedBeforeAnythingIsWritten) {
+  const TemporaryFolder folder;
+  const auto input = folder.write("cube.obj", obj_of(cube(10), "SPACE=LPS"));
+  for (const char* page : {"cube.obj", "cube.obj/report"}) {
+    const auto report =
+        imported({.input = input, .output = {.out = folder / "cube.ply", .page = folder / page}});
+    ASSERT_FALSE(report);
+    EXPECT_NE(report.error().message.find("cube.obj: is no folder that can be written into"),
+              std::string::npos)
+        << report.error().message;
+    EXPECT_FALSE(std::filesystem::exists(folder / "cube.ply"));
+  }
+}
+
+TEST(ImportCommand, TellsHowLongItTook) {
+  const TemporaryFolder folder;
+  const auto report = imported({.input = folder.write("cube.obj", obj_of(cube(10), "SPACE=LPS")),
+                                .output = {.out = folder / "cube.ply"}});
+  ASSERT_TRUE(report);
+  EXPECT_GT(report->seconds, 0);
+}
+
 TEST(ImportCommand, AJsonReportHoldsTheFigures) {
   const TemporaryFolder folder;
   const auto report = imported({.input = folder.write("cube.obj", obj_of(cube(10), "SPACE=LPS")),
