@@ -182,6 +182,10 @@ Cart::Now Cart::now() const {
   now.panel = s.showing->fault();
   now.mismatch_deg = s.sync->mismatch_deg();
   if (s.encoder) now.encoder = s.encoder->fault();
+  if (s.setup.session != nullptr) {
+    now.session_lost = s.setup.session->lost();
+    now.session_failing = s.setup.session->failing();
+  }
   return now;
 }
 

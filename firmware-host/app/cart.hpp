@@ -98,7 +98,9 @@ class Cart {
     /// What is wrong with each device; nothing_yet where nothing is.
     PortFault camera = PortFault::nothing_yet, pedal = PortFault::nothing_yet, panel = PortFault::nothing_yet,
               encoder = PortFault::nothing_yet;
-    int mismatch_deg = 0;  ///< SyncStage::mismatch_deg()
+    int mismatch_deg = 0;            ///< SyncStage::mismatch_deg()
+    std::uint64_t session_lost = 0;  ///< captures that are not in the session
+    bool session_failing = false;    ///< its newest write failed
   };
   Now now() const;
 

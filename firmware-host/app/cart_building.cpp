@@ -141,7 +141,8 @@ void Cart::State::build_stages() {
                         .lanes = lanes,
                         .frames = frames,
                         .captures = captures,
-                        .stages = ledgers},
+                        .stages = ledgers,
+                        .sink = setup.session},
       PanelStageSettings{
           .eye = eye_on(patient.surface.mesh, vector_of(config.view_from), vector_of(config.view_up)),
           .simulated = config.simulated(),

@@ -33,7 +33,22 @@ std::string DeviceLog::news(const Cart::Now& now) {
                        " degrees further round; nothing is painted until they agree\n"
                  : std::string("turn: agrees with the notch again\n");
   mismatch_deg_ = now.mismatch_deg;
-  return lines;
+  return lines + session_news(now);
+}
+
+// Of a disk that is too slow the first loss alone: the run's end tells how many there were.
+std::string DeviceLog::session_news(const Cart::Now& now) {
+  const bool changed = now.session_failing != session_failing_;
+  const bool first_loss = now.session_lost > 0 && !told_loss_;
+  session_failing_ = now.session_failing;
+  told_loss_ = told_loss_ || first_loss || now.session_failing;
+  const std::string lost = std::to_string(now.session_lost) + " lost so far";
+  if (changed && now.session_failing)
+    return "session: writing fails, captures are not kept (" + lost +
+           "); make room on the disk, it is tried again until it works\n";
+  if (changed) return "session: captures are kept again (" + lost + ")\n";
+  if (first_loss) return "session: the disk is too slow, captures are not kept (" + lost + ")\n";
+  return "";
 }
 
 }  // namespace orcart

@@ -1,4 +1,4 @@
-// Says once that a device is gone, and once that it is back.
+// Says once that a device is gone, and once that it is back; likewise of a session that is not kept.
 #pragma once
 
 #include <array>
@@ -14,7 +14,10 @@ class DeviceLog {
   std::string news(const Cart::Now& now);
 
  private:
+  std::string session_news(const Cart::Now& now);
+
   int mismatch_deg_ = 0;
+  bool session_failing_ = false, told_loss_ = false;
   std::array<PortFault, 4> known_{PortFault::nothing_yet, PortFault::nothing_yet, PortFault::nothing_yet,
                                   PortFault::nothing_yet};
 };

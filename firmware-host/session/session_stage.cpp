@@ -5,6 +5,8 @@ namespace orcart {
 
 StepReport SessionStage::step(Instant) noexcept {
   const auto written = writer_.write_pending(slots_);
+  failing_.store(!written, std::memory_order_relaxed);          // a flag alone, no partner
+  unwritten_.store(writer_.lost(), std::memory_order_relaxed);  // a count alone, no partner
   if (!written) {
     failures_.fetch_add(1, std::memory_order_relaxed);  // a count alone, no partner
     last_error_ = written.error().message;

@@ -31,8 +31,12 @@ class SessionStage final : public Stage, public CaptureSink {
 
   /// Any thread.
   std::uint64_t kept() const noexcept { return kept_.load(std::memory_order_relaxed); }  // a count alone
-  /// Any thread: captures for which there was no slot; steps whose write failed are in failures().
-  std::uint64_t lost() const noexcept { return slots_.lost(); }
+  /// Those for which there was no slot, and those whose write failed.
+  std::uint64_t lost() const noexcept override {
+    return slots_.lost() + unwritten_.load(std::memory_order_relaxed);  // a count alone
+  }
+  bool failing() const noexcept override { return failing_.load(std::memory_order_relaxed); }  // a flag alone
+  /// Any thread: steps whose write failed.
   std::uint64_t failures() const noexcept {
     return failures_.load(std::memory_order_relaxed);
   }  // a count alone
@@ -43,7 +47,8 @@ class SessionStage final : public Stage, public CaptureSink {
  private:
   SessionWriter& writer_;
   CaptureSlots slots_;
-  std::atomic<std::uint64_t> kept_{0}, failures_{0};
+  std::atomic<std::uint64_t> kept_{0}, failures_{0}, unwritten_{0};
+  std::atomic<bool> failing_{false};
   std::string last_error_;
 };
 

@@ -143,26 +143,37 @@ Result<void> SessionWriter::write_budgets(std::span<const SessionBudget> budgets
   return finish(written);
 }
 
+// A unit that was taken back gets no more pictures, so the marks may come after the whole batch.
 Result<std::size_t> SessionWriter::write_pending(CaptureSlots& slots) {
   auto note = slots.next();
-  if (!note) return 0;
+  if (!note && undone_.empty()) return 0;
   const std::int64_t before = captures_;
+  std::uint64_t taken = 0;
   Result<void> written = database_.run("BEGIN IMMEDIATE");
   for (; note; note = slots.next()) {
-    if (written) written = apply(*note, slots);
-    if (note->kind == SessionNote::Kind::captured) slots.give_back(note->slot);
+    if (note->kind == SessionNote::Kind::undone) {
+      undone_.push_back(note->unit);
+      continue;
+    }
+    ++taken;
+    if (written) written = write_capture(slots[note->slot]);
+    slots.give_back(note->slot);
   }
+  if (written) written = mark_undone();
   const Result<void> finished = finish(written);
   if (!finished) {
     captures_ = before;
+    lost_ += taken;
     return tl::unexpected(finished.error());
   }
+  undone_.clear();
   return static_cast<std::size_t>(captures_ - before);
 }
 
-Result<void> SessionWriter::apply(const SessionNote& note, CaptureSlots& slots) {
-  if (note.kind == SessionNote::Kind::undone) return done(statements_.undone.with(note.unit).step());
-  return write_capture(slots[note.slot]);
+Result<void> SessionWriter::mark_undone() {
+  for (const std::uint32_t unit : undone_)
+    if (const auto marked = done(statements_.undone.with(unit).step()); !marked) return marked;
+  return {};
 }
 
 Result<void> SessionWriter::write_capture(const CaptureSlot& slot) {

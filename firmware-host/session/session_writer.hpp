@@ -28,8 +28,11 @@ class SessionWriter {
   /// Replaces what was said of the same stages before.
   Result<void> write_budgets(std::span<const SessionBudget> budgets);
   /// Takes everything that waits, in one transaction, durable on return; gives every slot back whatever
-  /// happens. Returns how many captures were written. After an error none of them was.
+  /// happens. Returns how many captures were written. After an error none of them was, and lost() counts
+  /// them; what was taken back is kept in mind and written by the next call that succeeds.
   Result<std::size_t> write_pending(CaptureSlots& slots);
+  /// Captures that write_pending() took and could not write.
+  std::uint64_t lost() const { return lost_; }
 
   const std::filesystem::path& file() const { return file_; }
 
@@ -40,7 +43,7 @@ class SessionWriter {
   SessionWriter(std::filesystem::path file, Database database, Statements statements);
   static Result<Statements> prepare(Database& database);
   Result<void> write_capture(const CaptureSlot& slot);
-  Result<void> apply(const SessionNote& note, CaptureSlots& slots);
+  Result<void> mark_undone();
   /// Commits where `written` holds, else takes everything back.
   Result<void> finish(const Result<void>& written);
 
@@ -48,7 +51,9 @@ class SessionWriter {
   Database database_;
   Statements statements_;  // after database_: they go first
   std::vector<std::byte> deflate_buffer_;
+  std::vector<std::uint32_t> undone_;  ///< units taken back, of which the file does not know yet
   std::int64_t captures_ = 0;
+  std::uint64_t lost_ = 0;
 };
 
 /// The wall clock as ISO 8601, to the second: "2026-05-04T09:30:00Z".

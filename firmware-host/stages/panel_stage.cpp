@@ -83,6 +83,7 @@ Freshness shown_as(Liveness liveness) {
 }
 
 constexpr Nanos kBumpShownFor = 30s;
+constexpr Nanos kLossShownFor = 30s;
 constexpr Nanos kScopeShownFor = 50ms;
 constexpr Nanos kNoticeTime = 2s;
 
@@ -227,6 +228,7 @@ void PanelStage::tell_misses() noexcept {
 void PanelStage::choose_notice(Instant now) noexcept {
   const PaintState& paint = parts_.painter_stage.state();
   const Status& status = screen_state_.status;
+  const bool loses = loses_captures(now);
   screen_state_.status.notice.level = Notice::Level::none;
   if (status.video == Freshness::lost)
     return notice(Notice::Level::alarm, "NO LIVE VIDEO: check the camera's cable");
@@ -243,11 +245,22 @@ void PanelStage::choose_notice(Instant now) noexcept {
   if (camera_.frozen) return notice(Notice::Level::warning, "VIDEO FROZEN? The picture repeats");
   if (paint.failed_at != Instant{} && now - paint.failed_at < kNoticeTime)
     return notice(Notice::Level::warning, words_for(paint.last_refusal));
+  if (loses) return notice(Notice::Level::warning, "SESSION NOT KEPT: the disk is full or too slow");
   if (!pedal_.connected) return notice(Notice::Level::warning, "PEDAL NOT CONNECTED: check its cable");
   if (paint.warned_at != Instant{} && now - paint.warned_at < kNoticeTime)
     return notice(Notice::Level::warning, "PEDAL: stuck; let it go");
   if (paint.undone_at != Instant{} && now - paint.undone_at < kNoticeTime)
     return notice(Notice::Level::info, "Taken back");
+}
+
+// As long as writes fail, and a while after each loss: a slow disk loses one capture here and there.
+bool PanelStage::loses_captures(Instant now) noexcept {
+  if (parts_.sink == nullptr) return false;
+  if (const std::uint64_t lost = parts_.sink->lost(); lost != captures_lost_) {
+    captures_lost_ = lost;
+    lost_at_ = now;
+  }
+  return parts_.sink->failing() || (lost_at_ && now - *lost_at_ < kLossShownFor);
 }
 
 void PanelStage::notice_turn() noexcept {

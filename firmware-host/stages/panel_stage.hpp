@@ -5,10 +5,12 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "board/ports/panel.hpp"
+#include "firmware-host/stages/capture_sink.hpp"
 #include "firmware-host/stages/frame_ledger.hpp"
 #include "firmware-host/stages/lanes.hpp"
 #include "firmware-host/stages/painter_stage.hpp"
@@ -44,6 +46,7 @@ class PanelStage final : public Stage {
     Ledger<FrameRecord>& frames;
     Ledger<CaptureRecord>& captures;
     std::span<const StageLedger> stages{};  ///< of the whole cart: whose misses the status line tells
+    const CaptureSink* sink = nullptr;      ///< null: nothing is kept on disk
   };
   PanelStage(const Parts& parts, const PanelStageSettings& settings);
 
@@ -78,6 +81,7 @@ class PanelStage final : public Stage {
   void tell_misses() noexcept;
   void choose_notice(Instant now) noexcept;
   void notice_turn() noexcept;
+  bool loses_captures(Instant now) noexcept;
   void notice(Notice::Level level, std::string_view text) noexcept;
 
   static constexpr Nanos kFiguresEvery = 500ms;  ///< more often nobody reads them
@@ -101,6 +105,8 @@ class PanelStage final : public Stage {
   Instant coverage_due_{};             ///< of a painting that goes on; else in the picture after a change
   std::uint64_t counted_version_ = 0;  ///< of the painting whose coverage is told
   Nanos longest_latency_{0};           ///< of the frames since the panel last said it
+  std::uint64_t captures_lost_ = 0;    ///< by the sink, as far as the panel has seen
+  std::optional<Instant> lost_at_;     ///< when it saw the newest
   std::atomic<double> coverage_{0};
   std::atomic<bool> degraded_{false};
 };

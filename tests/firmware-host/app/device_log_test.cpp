@@ -38,5 +38,30 @@ TEST(DeviceLog, TellsATurnThatTheNotchContradictsOnceAndWhenTheyAgreeAgain) {
   EXPECT_EQ(log.news(now), "turn: agrees with the notch again\n");
 }
 
+TEST(DeviceLog, TellsASessionThatIsNotKeptOnceAndWhenItIsAgain) {
+  DeviceLog log;
+  Cart::Now now;
+  now.session_failing = true;
+  now.session_lost = 1;
+  EXPECT_EQ(
+      log.news(now),
+      "session: writing fails, captures are not kept (1 lost so far); make room on the disk, it is tried "
+      "again until it works\n");
+  now.session_lost = 7;
+  EXPECT_EQ(log.news(now), "");
+  now.session_failing = false;
+  EXPECT_EQ(log.news(now), "session: captures are kept again (7 lost so far)\n");
+  EXPECT_EQ(log.news(now), "");
+}
+
+TEST(DeviceLog, TellsTheFirstCaptureThatASlowDiskLost) {
+  DeviceLog log;
+  Cart::Now now;
+  now.session_lost = 2;
+  EXPECT_EQ(log.news(now), "session: the disk is too slow, captures are not kept (2 lost so far)\n");
+  now.session_lost = 3;
+  EXPECT_EQ(log.news(now), "");
+}
+
 }  // namespace
 }  // namespace orcart

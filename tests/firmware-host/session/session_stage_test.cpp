@@ -52,9 +52,33 @@ TEST(SessionStage, GoesOnAfterAFullDiskAndSaysWhatHappened) {
     EXPECT_TRUE(bench.stage.step({}).worked);
   }
   EXPECT_EQ(bench.stage.failures(), 1U);
+  EXPECT_EQ(bench.stage.lost(), 1U);
+  EXPECT_TRUE(bench.stage.failing());
   EXPECT_NE(bench.stage.last_error().find("a.orcart: "), std::string::npos) << bench.stage.last_error();
   bench.paint(2);
   EXPECT_EQ(bench.stage.step({}).items, 1U);
+  EXPECT_EQ(bench.stage.lost(), 1U);
+  EXPECT_FALSE(bench.stage.failing());
+}
+
+TEST(SessionStage, RemembersWhatWasTakenBackWhileTheDiskWasFull) {
+  Bench bench;
+  bench.paint(1);
+  bench.paint(2);
+  EXPECT_EQ(bench.stage.step({}).items, 2U);
+  {
+    const FullDisk full(std::filesystem::file_size((bench.folder / "a.orcart-wal")));
+    bench.stage.undone(2);
+    (void)bench.stage.step({});
+    EXPECT_EQ(bench.stage.failures(), 1U);
+  }
+  (void)bench.stage.step({});
+  const auto captures = SessionReader::open(bench.folder / "a.orcart")->captures();
+  ASSERT_EQ(captures->size(), 2U);
+  EXPECT_FALSE(captures->at(0).undone);
+  EXPECT_TRUE(captures->at(1).undone);
+  EXPECT_EQ(bench.stage.lost(), 0U);
+  EXPECT_FALSE(bench.stage.failing());
 }
 
 TEST(SessionStage, CountsWhatItHadNoRoomFor) {

@@ -11,6 +11,18 @@
 namespace orcart::testing {
 namespace {
 
+/// Loses captures as it is told.
+class LossySink final : public CaptureSink {
+ public:
+  void keep(const CapturedFrame&, const CaptureRecord&) noexcept override {}
+  void undone(std::uint32_t) noexcept override {}
+  std::uint64_t lost() const noexcept override { return count; }
+  bool failing() const noexcept override { return fails; }
+
+  std::uint64_t count = 0;
+  bool fails = false;
+};
+
 /// A small panel over a plate; tracker at 60 Hz, video at 30.
 class PanelStageTest : public ::testing::Test {
  protected:
@@ -56,6 +68,7 @@ class PanelStageTest : public ::testing::Test {
                           .patches = patches_,
                           .captures = captures_,
                           .buffer_count = 1}};
+  LossySink sink_;
   PanelStage stage_{{.panel = panel_,
                      .screen = screen_,
                      .painter = painter_,
@@ -63,7 +76,8 @@ class PanelStageTest : public ::testing::Test {
                      .clock = clock_,
                      .lanes = lanes_,
                      .frames = frames_,
-                     .captures = captures_},
+                     .captures = captures_,
+                     .sink = &sink_},
                     {.eye = eye_on(wall_.mesh, {0, 0, -1}, {0, -1, 0}),
                      .freshness = {.tracker_period = 16ms, .video_period = 33ms}}};
 };
@@ -96,6 +110,25 @@ TEST_F(PanelStageTest, SaysDegradedOnceItWasTold) {
   EXPECT_FALSE(status_at(2000ms, 2000ms).degraded);
   stage_.tell_degraded();
   EXPECT_TRUE(status_at(2200ms, 2200ms).degraded);
+}
+
+TEST_F(PanelStageTest, SaysThatCapturesAreNotKeptWhileWritesFailAndAWhileAfterEachLoss) {
+  constexpr const char* kNotKept = "SESSION NOT KEPT: the disk is full or too slow";
+  const auto notice_at = [&](Nanos at) {
+    const Instant now = instant_from_nanos(at.count());
+    lanes_.tracker_news.post({.last_reply = now, .last_complete = now, .running = true});
+    lanes_.camera_news.post({.last_frame = now});
+    const Notice& notice = status_at(at, at).notice;
+    return notice.level == Notice::Level::none ? std::string() : std::string(notice.text.data());
+  };
+  EXPECT_EQ(notice_at(1s), "");
+  sink_.count = 1;
+  EXPECT_EQ(notice_at(2s), kNotKept);
+  EXPECT_EQ(notice_at(31s), kNotKept);
+  EXPECT_EQ(notice_at(33s), "");
+  sink_.fails = true;
+  EXPECT_EQ(notice_at(34s), kNotKept);
+  EXPECT_EQ(notice_at(99s), kNotKept);
 }
 
 }  // namespace
