@@ -86,8 +86,10 @@ void read_gpio(const TomlSection& section, GpioWish& gpio) {
 }  // namespace
 
 void read_camera(const TomlSection& section, CameraConfig& camera) {
-  camera.kind = section.choice_of<CameraKind>(
-      "kind", {{"simulated", CameraKind::simulated}, {"v4l2", CameraKind::v4l2}});
+  const auto kind =
+      section.kind_of<CameraKind>("kind", {{"simulated", CameraKind::simulated}, {"v4l2", CameraKind::v4l2}});
+  if (!kind) return;
+  camera.kind = *kind;
   camera.width_px = static_cast<int>(section.integer("width_px", {.min = 64, .max = 4096, .fallback = 640}));
   camera.height_px =
       static_cast<int>(section.integer("height_px", {.min = 64, .max = 4096, .fallback = 480}));
@@ -105,12 +107,13 @@ void read_camera(const TomlSection& section, CameraConfig& camera) {
 }
 
 void read_pedal(const TomlSection& section, PedalConfig& pedal) {
-  pedal.kind = section.choice_of<PedalKind>("kind",
-                                            {{"simulated", PedalKind::simulated},
-                                             {"gpio", PedalKind::gpio},
-                                             {"keyboard", PedalKind::keyboard},
-                                             {"none", PedalKind::none}},
-                                            PedalKind::simulated);
+  const auto kind = section.kind_of<PedalKind>("kind",
+                                               {{"simulated", PedalKind::simulated},
+                                                {"gpio", PedalKind::gpio},
+                                                {"keyboard", PedalKind::keyboard},
+                                                {"none", PedalKind::none}},
+                                               PedalKind::simulated);
+  pedal.kind = kind.value_or(PedalKind::none);  // a refused one is not complained of as simulated too
   if (pedal.kind == PedalKind::gpio) read_gpio(section, pedal.gpio);
   if (pedal.kind != PedalKind::keyboard) return;
   pedal.keyboard = {.device = section.text("device"), .key = section.text("key")};
@@ -127,8 +130,10 @@ EncoderScale scale_of(const EncoderConfig& encoder) {
 
 // A turn of the picture is from x towards y, which goes clockwise as it is seen.
 void read_encoder(const TomlSection& section, EncoderConfig& encoder) {
-  encoder.kind = section.choice_of<EncoderKind>(
+  const auto kind = section.kind_of<EncoderKind>(
       "kind", {{"simulated", EncoderKind::simulated}, {"evdev", EncoderKind::evdev}});
+  encoder.kind = kind.value_or(EncoderKind::evdev);  // a refused one is not complained of as simulated too
+  if (!kind) return;
   encoder.counts_per_turn = section.integer("counts_per_turn", {.min = 90, .max = 10'000'000});
   encoder.rise = section.choice_of<CountsRise>(
       "counts_rise", {{"clockwise", CountsRise::clockwise}, {"anticlockwise", CountsRise::anticlockwise}});

@@ -81,11 +81,13 @@ Result<void> check_distinct(const std::vector<TrackedTool>& tools) {
 }  // namespace
 
 void read_tracker(const TomlSection& section, TrackerConfig& tracker) {
-  tracker.kind = section.choice_of<TrackerKind>("kind", {{"simulated", TrackerKind::simulated},
-                                                         {"usb", TrackerKind::usb},
-                                                         {"tty", TrackerKind::tty},
-                                                         {"tcp", TrackerKind::tcp},
-                                                         {"replay", TrackerKind::replay}});
+  const auto kind = section.kind_of<TrackerKind>("kind", {{"simulated", TrackerKind::simulated},
+                                                          {"usb", TrackerKind::usb},
+                                                          {"tty", TrackerKind::tty},
+                                                          {"tcp", TrackerKind::tcp},
+                                                          {"replay", TrackerKind::replay}});
+  if (!kind) return;
+  tracker.kind = *kind;
   read_way(section, tracker);
   if (tracker.kind == TrackerKind::tcp) {
     tracker.baud = 0;

@@ -62,6 +62,13 @@ class TomlSection {
   template <class Enum>
   Enum choice_of(std::string_view key, std::initializer_list<std::pair<std::string_view, Enum>> words,
                  std::optional<Enum> fallback = std::nullopt) const;
+  /// The same for the word that says which keys the section may have. Nothing where it is refused, or
+  /// missing in a section that is there: the section is to be left unread then, and none of its keys counts
+  /// as unknown.
+  template <class Enum>
+  std::optional<Enum> kind_of(std::string_view key,
+                              std::initializer_list<std::pair<std::string_view, Enum>> words,
+                              std::optional<Enum> fallback = std::nullopt) const;
 
   /// Exactly `count` finite numbers; with count 0 any number of them.
   std::vector<double> numbers(std::string_view key, std::size_t count,
@@ -94,6 +101,7 @@ class TomlSection {
   std::optional<std::vector<double>> flat_numbers(std::string_view key, bool required,
                                                   const std::string& accepted) const;
   void refuse_value(const Value& value, const std::string& accepted) const;
+  void leave_unread() const;
 
   TomlReader* reader_;
   const void* table_;  ///< a toml::table, or null where the file has no such section
@@ -141,6 +149,21 @@ Enum TomlSection::choice_of(std::string_view key,
   for (const auto& [name, value] : words)
     if (name == chosen) return value;
   return fallback.value_or(words.begin()->second);
+}
+
+template <class Enum>
+std::optional<Enum> TomlSection::kind_of(std::string_view key,
+                                         std::initializer_list<std::pair<std::string_view, Enum>> words,
+                                         std::optional<Enum> fallback) const {
+  if (fallback && !has(key)) return fallback;
+  std::vector<std::string_view> names;
+  for (const auto& word : words) names.push_back(word.first);
+  const std::string chosen = choice(key, names);
+  for (const auto& [name, value] : words)
+    if (name == chosen) return value;
+  if (!present()) return words.begin()->second;  // so that what else is missing is told as well
+  leave_unread();
+  return std::nullopt;
 }
 
 }  // namespace orcart

@@ -69,6 +69,12 @@ TomlSection::Value TomlSection::value(std::string_view key, bool required) const
   return found;
 }
 
+void TomlSection::leave_unread() const {
+  const auto* table = static_cast<const toml::table*>(table_);
+  if (table == nullptr) return;
+  for (const auto& [key, node] : *table) reader_->state_->asked[table].emplace(key.str());
+}
+
 void TomlSection::refuse_value(const Value& value, const std::string& accepted) const {
   reader_->state_->error(value.node->source().begin.line,
                          value.label + " is " + shown(*value.node) + "; " + accepted + " is accepted");

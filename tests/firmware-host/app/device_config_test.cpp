@@ -2,6 +2,8 @@
 // what they are.
 #include "firmware-host/app/device_config.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "firmware-host/app/cart.hpp"
@@ -132,6 +134,16 @@ TEST(DeviceLog, SaysOnceThatADeviceIsGoneAndOnceThatItIsBack) {
   EXPECT_NE(gone.find("camera: disconnected"), std::string::npos);
   EXPECT_EQ(log.news({.camera = PortFault::disconnected}), "");
   EXPECT_EQ(log.news({}), "camera: works again\n");
+}
+
+TEST(DeviceConfig, OfAMistypedKindComplainsOnceAndOfNoneOfItsKeys) {
+  const std::string camera =
+      "kind = \"v4l\"\ndevice = \"/dev/video3\"\nstamp = \"dequeued\"\nfield = \"top\"";
+  const std::string pedal = "[pedal]\nkind = \"gpi\"\nchip = \"gpiochip0\"\nline = \"4\"";
+  for (const std::string& words : {complaint(camera), complaint("", pedal)}) {
+    EXPECT_EQ(std::count(words.begin(), words.end(), '\n'), 0) << words;
+    EXPECT_NE(words.find("] kind is \""), std::string::npos) << words;
+  }
 }
 
 }  // namespace
