@@ -1,6 +1,7 @@
 // Reads cart.toml, section by section; the errors of all sections are told together.
 #include "firmware-host/app/cart_config.hpp"
 
+#include <Eigen/Geometry>
 #include <numbers>
 
 #include "firmware-host/files/toml_reader.hpp"
@@ -83,6 +84,22 @@ void read_painting(const TomlSection& section, CartConfig& config) {
                                                config.light);
 }
 
+/// Directions that do not tell where up is would show nothing.
+void read_view(const TomlSection& view, CartConfig& config) {
+  config.view_from = view.numbers("from", 3, config.view_from);
+  config.view_up = view.numbers("up", 3, config.view_up);
+  const Eigen::Vector3d from(config.view_from[0], config.view_from[1], config.view_from[2]);
+  const Eigen::Vector3d up(config.view_up[0], config.view_up[1], config.view_up[2]);
+  constexpr double kLeastSine = 1e-3;
+  if (from.isZero(0) || up.isZero(0))
+    view.refuse(from.isZero(0) ? "from" : "up",
+                "is [0, 0, 0]; a direction in the surface's axes is accepted");
+  else if (from.normalized().cross(up.normalized()).norm() < kLeastSine)
+    view.refuse("up",
+                "lies along from; another direction than that of from is accepted (it is [0, 0, 1] "
+                "where it is not stated)");
+}
+
 void read_simulation(const TomlSection& section, SimulationConfig& simulation) {
   simulation.seed = static_cast<std::uint64_t>(section.integer("seed", {.min = 0, .fallback = 1}));
   simulation.duration_s = section.number("duration_s", {.min = 2, .max = 3600, .fallback = 30});
@@ -119,8 +136,7 @@ Result<CartConfig> read_cart(const std::filesystem::path& file) {
         1e-3 * sync.number("tracker_against_video_deviation_ms", {.min = 0, .max = 100});
   read_painting(reader.section("painting"), config);
   const TomlSection view = reader.section("view");
-  config.view_from = view.numbers("from", 3, config.view_from);
-  config.view_up = view.numbers("up", 3, config.view_up);
+  read_view(view, config);
   const bool measured =
       config.tracker.kind != TrackerKind::simulated && config.camera.kind != CameraKind::simulated;
   if (measured && config.turn == TurnSource::encoder && config.encoder.kind == EncoderKind::simulated)

@@ -26,6 +26,10 @@ bool tells(const std::string& complaint, const std::string& what) {
   return complaint.find(what) != std::string::npos;
 }
 
+std::string complaint_of_view(const std::string& head, const std::string& view) {
+  return complaint(head + "[view]\n" + view + "\n");
+}
+
 TEST(CartConfig, ReadsTheShippedDemo) {
   const auto config = read_cart(demo_cart());
   ASSERT_TRUE(config) << config.error().message;
@@ -77,6 +81,18 @@ TEST(CartConfig, TellsEveryErrorAtOnceWithItsLine) {
   EXPECT_TRUE(tells(told, "4000")) << told;
   EXPECT_TRUE(tells(told, "cubist")) << told;
   EXPECT_TRUE(tells(told, "sead")) << told;
+}
+
+TEST(CartConfig, RefusesAViewThatDoesNotTellWhereUpIs) {
+  const std::string demo = text_of(demo_cart());
+  const std::string head = demo.substr(0, demo.find("[view]"));
+  ASSERT_LT(head.size(), demo.size());
+  EXPECT_EQ(complaint_of_view(head, "from = [0, 1, 0]"), "");
+  EXPECT_TRUE(tells(complaint_of_view(head, "from = [0, 0, 1]"), "[view] up lies along from"));
+  EXPECT_TRUE(
+      tells(complaint_of_view(head, "from = [1, 1, 0]\nup = [-2, -2, 0]"), "[view] up lies along from"));
+  EXPECT_TRUE(tells(complaint_of_view(head, "from = [0, 0, 0]"), "[view] from is [0, 0, 0]"));
+  EXPECT_TRUE(tells(complaint_of_view(head, "up = [0, 0, 0]"), "[view] up is [0, 0, 0]"));
 }
 
 TEST(CartConfig, RefusesAnExposureLongerThanThePeriod) {
