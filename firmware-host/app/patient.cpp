@@ -48,6 +48,10 @@ Result<void> turn_scope(const CartConfig& config, Patient& patient) {
   return {};
 }
 
+void append(std::vector<std::string>& notes, const std::vector<std::string>& more) {
+  notes.insert(notes.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
 Result<Patient> read_patient(const CartConfig& config) {
@@ -62,8 +66,10 @@ Result<Patient> read_patient(const CartConfig& config) {
                 " is open, so it has no inside; seen_from = \"inside\" wants a closed surface");
   }
 
-  auto scope = read_scope(config.scope);
+  std::vector<std::string> mended;
+  auto scope = read_scope(config.scope, &mended);
   if (!scope) return tl::unexpected(scope.error());
+  append(patient.notes, mended);
   patient.scope = std::move(*scope);
   if (patient.scope.width_px != config.camera.width_px ||
       patient.scope.height_px != config.camera.height_px) {
@@ -81,8 +87,9 @@ Result<Patient> read_patient(const CartConfig& config) {
   if (auto at = turn_scope(config, patient); !at) return tl::unexpected(at.error());
   if (!patient.painting_blocked.empty()) patient.notes.push_back(patient.painting_blocked);
 
-  auto registration = read_registration(config.registration);
+  auto registration = read_registration(config.registration, &mended);
   if (!registration) return tl::unexpected(registration.error());
+  append(patient.notes, mended);
   patient.registration = std::move(*registration);
   if (patient.registration.surface_hash != patient.surface.identity.hash) {
     return fail(config.registration.string() + " belongs to the surface " +

@@ -1,6 +1,8 @@
 // Files that do not belong together are refused before anything is armed.
 #include "firmware-host/app/patient.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "tests/firmware-host/app/demo_cart.hpp"
@@ -34,6 +36,19 @@ TEST(Patient, RefusesARegistrationOfAnotherSurface) {
   ASSERT_FALSE(patient);
   for (const std::string& named : {other, hash, config.registration.string(), config.surface.string()})
     EXPECT_NE(patient.error().message.find(named), std::string::npos) << patient.error().message;
+}
+
+TEST(Patient, TellsAPoseThatWasMended) {
+  const TemporaryFolder folder;
+  CartConfig config = demo();
+  config.registration =
+      folder.write("r.toml", replaced(text_of(config.registration), "0.477097364", "0.485097364"));
+  const auto patient = read_patient(config);
+  ASSERT_TRUE(patient) << patient.error().message;
+  EXPECT_TRUE(std::any_of(patient->notes.begin(), patient->notes.end(), [&](const std::string& note) {
+    return note.starts_with(config.registration.string()) &&
+           note.find("X_MR differs by") != std::string::npos;
+  })) << ::testing::PrintToString(patient->notes);
 }
 
 TEST(Patient, RefusesAPassportOfAnotherPictureSize) {
