@@ -112,7 +112,9 @@ Result<void> KeptSession::finish(const std::array<StageLedger, kStageCount>& led
   std::vector<SessionBudget> budgets;
   budgets.reserve(ledgers.size());
   for (const StageLedger& ledger : ledgers) budgets.push_back(kept_budget(ledger));
-  return writer_.write_budgets(budgets);
+  auto written = writer_.write_budgets(budgets);
+  writer_.leave_wal();
+  return written;
 }
 
 std::string KeptSession::sentence() const {

@@ -25,6 +25,14 @@ Result<std::vector<Row>> all_rows(Database& database, std::string_view sql, RowO
   }
 }
 
+/// Nothing beside it waits to be taken into the file. In a folder that may not be written to SQLite opens no
+/// file in WAL mode, though such a one is whole.
+bool is_alone(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return !std::filesystem::exists(file.string() + "-wal", ignored) &&
+         !std::filesystem::exists(file.string() + "-journal", ignored);
+}
+
 StoredCapture capture_of(const Statement& row) {
   StoredCapture capture{.id = row.integer(0)};
   capture.facts = {.unit = static_cast<std::uint32_t>(row.integer(1)),
@@ -58,12 +66,20 @@ SessionReader::SessionReader(std::filesystem::path file, Database database)
     : file_(std::move(file)), database_(std::move(database)) {}
 
 Result<SessionReader> SessionReader::open(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file))
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored))
     return fail(file.string() + " is no file; a session written by orcartd (*.orcart) is accepted");
   auto database = Database::open(file, Database::Mode::read);
   if (!database) return tl::unexpected(database.error());
-  const auto id = database->integer("PRAGMA application_id");
-  if (!id || *id != kSessionApplicationId)
+  auto id = database->integer("PRAGMA application_id");
+  if (!id && is_alone(file)) {
+    if (auto again = Database::open(file, Database::Mode::read_only); again) {
+      database = std::move(again);
+      id = database->integer("PRAGMA application_id");
+    }
+  }
+  if (!id) return fail(id.error().message + "; a session written by orcartd (*.orcart) is accepted");
+  if (*id != kSessionApplicationId)
     return fail(file.string() + " is no session file; one written by orcartd (*.orcart) is accepted");
   const auto version = database->integer("PRAGMA user_version");
   if (!version) return tl::unexpected(version.error());

@@ -201,6 +201,10 @@ Result<void> SessionWriter::write_capture(const CaptureSlot& slot) {
   return {};
 }
 
+void SessionWriter::leave_wal() {
+  (void)database_.run("PRAGMA journal_mode = DELETE");
+}
+
 Result<void> SessionWriter::finish(const Result<void>& written) {
   Result<void> result = written;
   if (result) result = database_.run("COMMIT");

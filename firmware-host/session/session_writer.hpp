@@ -34,6 +34,10 @@ class SessionWriter {
   /// Captures that write_pending() took and could not write.
   std::uint64_t lost() const { return lost_; }
 
+  /// Last: leaves WAL mode, so that the file may be read where nothing may be written. Where somebody has it
+  /// open meanwhile it stays as it is, and whole.
+  void leave_wal();
+
   const std::filesystem::path& file() const { return file_; }
 
  private:

@@ -15,6 +15,20 @@ tl::unexpected<Error> failure(sqlite3* handle) {
   return fail(name + ": " + sqlite3_errmsg(handle));
 }
 
+/// SQLite's own form of a file's name, with what a name may hold and a URI may not written in hex.
+std::string unchanging(const std::filesystem::path& file) {
+  constexpr const char* kHex = "0123456789ABCDEF";
+  std::string uri = "file:";
+  for (const char c : std::filesystem::absolute(file).string()) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '%' || c == '?' || c == '#')
+      uri += {'%', kHex[byte >> 4U], kHex[byte & 15U]};
+    else
+      uri += c;
+  }
+  return uri + "?immutable=1";
+}
+
 }  // namespace
 
 void Statement::Finalizer::operator()(sqlite3_stmt* statement) const {
@@ -82,12 +96,14 @@ std::span<const std::byte> Statement::bytes(int column) const {
 
 Result<Database> Database::open(const std::filesystem::path& file, Mode mode) {
   sqlite3* handle = nullptr;
-  const int code =
-      sqlite3_open_v2(file.c_str(), &handle, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, nullptr);
+  const bool changes = mode != Mode::read_only;
+  const std::string name = changes ? file.string() : unchanging(file);
+  const int access = changes ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
+  const int code = sqlite3_open_v2(name.c_str(), &handle, access | SQLITE_OPEN_NOMUTEX, nullptr);
   Database database(handle);  // SQLite gives a handle to close even where it failed
   if (code != SQLITE_OK) return fail(file.string() + ": " + sqlite3_errmsg(handle));
   sqlite3_busy_timeout(handle, 1000);
-  const auto set = database.run(mode == Mode::read ? "PRAGMA query_only = ON" : "PRAGMA foreign_keys = ON");
+  const auto set = database.run(mode == Mode::write ? "PRAGMA foreign_keys = ON" : "PRAGMA query_only = ON");
   if (!set) return tl::unexpected(set.error());
   return database;
 }

@@ -68,10 +68,10 @@ class Statement {
 
 class Database {
  public:
-  enum class Mode : std::uint8_t { write, read };
+  enum class Mode : std::uint8_t { write, read, read_only };
 
   /// Of a file that exists. `read` also mends what a lost power supply left, where the folder may be written
-  /// to.
+  /// to. `read_only` believes that nobody writes the file, and writes nothing beside it either.
   static Result<Database> open(const std::filesystem::path& file, Mode mode);
 
   /// One or more statements without parameters and rows.

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -217,6 +218,62 @@ TEST_F(SessionFile, IsOneFileOnceItsWriterIsDone) {
   EXPECT_FALSE(std::filesystem::exists(file_.string() + "-wal"));
 }
 
+/// How a reader without rights on the folder fares: its complaint, or how many captures it found.
+std::string read_without_rights(const std::filesystem::path& folder, const std::filesystem::path& file) {
+  const uid_t me = geteuid();
+  if (me == 0 && chown(file.c_str(), 65534, 65534) != 0) return "cannot give the file away";
+  if (me == 0 && chown(folder.c_str(), 65534, 65534) != 0) return "cannot give the folder away";
+  chmod(folder.c_str(), 0500);
+  if (me == 0 && seteuid(65534) != 0) return "cannot be somebody else";  // root may write everywhere
+  std::string told;
+  {
+    auto opened = SessionReader::open(file);
+    const auto captures = opened ? opened->captures() : tl::unexpected(opened.error());
+    told = captures ? std::to_string(captures->size()) : captures.error().message;
+  }
+  if (me == 0 && seteuid(me) != 0) told += " and stays somebody else";
+  chmod(folder.c_str(), 0700);
+  return told;
+}
+
+TEST_F(SessionFile, IsReadInAFolderThatMayNotBeWrittenToFinishedOrNot) {
+  for (const bool finished : {true, false}) {
+    {
+      SessionWriter session = writer();
+      offer(1);
+      ASSERT_EQ(session.write_pending(slots_), 1U);
+      if (finished) session.leave_wal();
+    }
+    EXPECT_EQ(read_without_rights(folder_.path(), file_), "1") << finished;
+    std::filesystem::remove(file_);
+  }
+}
+
+TEST_F(SessionFile, TellsWhyItCannotBeReadWhereItsLogStandsBesideItInSuchAFolder) {
+  SessionWriter session = writer();
+  offer(1);
+  ASSERT_EQ(session.write_pending(slots_), 1U);
+  const auto copy = folder_ / "copies";
+  std::filesystem::create_directory(copy);
+  chmod(folder_.path().c_str(), 0755);  // somebody else gets as far as there
+  for (const char* suffix : {"", "-wal"})
+    std::filesystem::copy(file_.string() + suffix, (copy / "a.orcart").string() + suffix);
+  const std::string told = read_without_rights(copy, copy / "a.orcart");
+  EXPECT_TRUE(told.starts_with((copy / "a.orcart").string() + ": ")) << told;
+  EXPECT_EQ(told.find("is no session file"), std::string::npos) << told;
+}
+
+TEST_F(SessionFile, LeavesWalModeOnceFinished) {
+  {
+    SessionWriter session = writer();
+    session.leave_wal();
+  }
+  std::ifstream file(file_, std::ios::binary);
+  std::array<char, 20> header{};
+  file.read(header.data(), header.size());
+  EXPECT_EQ(header[18], 1) << "2 is WAL mode";
+}
+
 TEST_F(SessionFile, IsNeverWrittenOver) {
   std::ofstream(file_) << "precious";
   const auto made = SessionWriter::create(file_, some_meta());
@@ -280,7 +337,8 @@ TEST_F(SessionFile, RefusesWhatIsNoSession) {
   for (const char* name : {"empty.orcart", "garbage.orcart"}) {
     const auto opened = SessionReader::open(folder_ / name);
     ASSERT_FALSE(opened) << name;
-    EXPECT_NE(opened.error().message.find("is no session file"), std::string::npos) << opened.error().message;
+    EXPECT_NE(opened.error().message.find("orcartd (*.orcart) is accepted"), std::string::npos)
+        << opened.error().message;
   }
 }
 
