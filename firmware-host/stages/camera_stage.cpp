@@ -28,12 +28,13 @@ StepReport CameraStage::step(Instant) noexcept {
     CapturedFrame frame = intake_.accept(*buffer, clock_.now());
     if (notch_ != nullptr) frame.notch_turn_rad = notch_->turn_in(frame.image);
     news_.last_frame = frame.exposure_end;
+    news_.last_dequeued = frame.dequeued_at;
     if (!lanes_.frames.try_push(frame)) source_.give_back(buffer->index);
     ++report.items;
   }
   report.worked = report.items > 0;
   news_.frozen = intake_.health().frozen;
-  news_.connected = news_.connected && !intake_.health().stamps_faulty;
+  news_.stamps_wrong = intake_.health().stamps_faulty;
   lanes_.camera_news.post(news_);
   return report;
 }

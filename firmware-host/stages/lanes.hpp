@@ -32,10 +32,12 @@ struct TrackerNews {
 
 /// The camera as its stage sees it, for the panel.
 struct CameraNews {
-  Instant last_frame{};
+  Instant last_frame{};     ///< exposure end of the newest frame
+  Instant last_dequeued{};  ///< when that was taken from the source
   std::uint32_t damaged = 0;
   bool frozen = false;
   bool connected = true;
+  bool stamps_wrong = false;  ///< CameraHealth::stamps_faulty: frames come, and none is painted
 };
 
 /// The pedal as its stage sees it, for the panel.

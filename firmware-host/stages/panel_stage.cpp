@@ -176,8 +176,10 @@ void PanelStage::fill_status() noexcept {
 
   const FreshnessRules& rules = settings_.freshness;
   // The camera is judged by the newest that it sent, the inset by how far it lies behind that.
-  const Instant sent = std::max(camera_.last_frame, paint.newest_exposed);
-  const Liveness video = std::min(rules.video(now, sent), rules.video(sent, paint.newest_exposed));
+  // Where its stamps are wrong, both by when frames came: wrong stamps are no pulled cable.
+  const Instant shown = camera_.stamps_wrong ? paint.newest.dequeued_at : paint.newest_exposed;
+  const Instant sent = std::max(camera_.stamps_wrong ? camera_.last_dequeued : camera_.last_frame, shown);
+  const Liveness video = std::min(rules.video(now, sent), rules.video(sent, shown));
   status.video = shown_as(camera_.connected ? video : Liveness::lost);
   status.tracker = shown_as(rules.tracker(now, tracker_.last_reply));
   const bool tracked = rules.tool_seen(now, tracker_.last_complete);
@@ -234,6 +236,7 @@ void PanelStage::choose_notice(Instant now) noexcept {
     return notice(Notice::Level::alarm, "NO LIVE VIDEO: check the camera's cable");
   if (status.tracker == Freshness::lost) return notice(Notice::Level::alarm, "TRACKER LOST: check its cable");
   if (status.painting_blocked) return notice(Notice::Level::warning, settings_.painting_blocked);
+  if (camera_.stamps_wrong) return notice(Notice::Level::warning, "CAMERA STAMPS WRONG: see [camera] stamp");
   if (tracker_.infrared)
     return notice(Notice::Level::warning, "TOO MUCH INFRA-RED LIGHT: shade or move the lamp");
   if (!status.tool_seen) return notice(Notice::Level::warning, "TOOL NOT SEEN: clear its line of sight");

@@ -123,6 +123,20 @@ TEST_F(CameraStageTest, TellsThatTheCameraIsGoneUntilAFrameComes) {
   EXPECT_TRUE(step().connected);
 }
 
+TEST_F(CameraStageTest, TellsWrongStampsForWhatTheyAreAndHandsTheFramesOn) {
+  for (std::uint32_t i = 0; i < 3; ++i, clock.advance_by(33ms)) {
+    FrameBuffer future = buffer(i);
+    future.stamp = clock.now() + 1s;
+    camera.script = {future};
+    (void)step();
+  }
+  EXPECT_TRUE(stage.news().connected);
+  EXPECT_TRUE(stage.news().stamps_wrong);
+  EXPECT_EQ(all_of(lanes.frames).size(), 3u);
+  camera.script = {buffer(3)};
+  EXPECT_FALSE(step().stamps_wrong);
+}
+
 TEST_F(CameraStageTest, RecoversAtOnceAndThenLessAndLessOftenButOnceASecond) {
   const Instant broken = clock.now();
   for (int i = 0; i < 4000; ++i, clock.advance_by(1ms)) {

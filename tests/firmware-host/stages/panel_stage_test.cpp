@@ -29,14 +29,15 @@ class PanelStageTest : public ::testing::Test {
   static constexpr PanelMode kMode{.width_px = 320, .height_px = 200, .refresh_hz = 30};
 
   /// A picture that was exposed until then is shown from now on.
-  void show(Instant exposed) {
+  void show(Instant exposed) { show(exposed, exposed); }
+  void show(Instant exposed, Instant dequeued) {
     const CapturedFrame frame{.sequence = ++frames_shown_,
                               .image = picture_.descriptor(),
                               .exposure_start = exposed - 8ms,
                               .exposure_end = exposed,
-                              .dequeued_at = exposed};
+                              .dequeued_at = dequeued};
     ASSERT_TRUE(lanes_.orders.try_push({.kind = PaintOrderKind::show, .frame = frame}));
-    painting_.step(exposed);
+    painting_.step(dequeued);
   }
 
   const Status& status_at(Nanos step, Nanos clock) {
@@ -106,6 +107,17 @@ TEST_F(PanelStageTest, ALivePictureKeepsUpWithWhatTheCameraSends) {
   EXPECT_EQ(status_at(2400ms, 2400ms).video, Freshness::stale) << "the camera sends none";
 }
 
+TEST_F(PanelStageTest, OfWrongStampsThePictureStaysAndTheNoticeNamesThem) {
+  const auto at = [](Nanos since) { return instant_from_nanos(since.count()); };
+  show(at(3000ms), at(2000ms));
+  lanes_.camera_news.post({.last_frame = at(3000ms), .last_dequeued = at(2000ms), .stamps_wrong = true});
+  lanes_.tracker_news.post({.last_reply = at(2000ms), .last_complete = at(2000ms), .running = true});
+  const Status& status = status_at(2010ms, 2010ms);
+  EXPECT_EQ(status.video, Freshness::live);
+  EXPECT_STREQ(status.notice.text.data(), "CAMERA STAMPS WRONG: see [camera] stamp");
+  EXPECT_EQ(status_at(2300ms, 2300ms).video, Freshness::lost) << "none came since";
+}
+
 TEST_F(PanelStageTest, SaysDegradedOnceItWasTold) {
   EXPECT_FALSE(status_at(2000ms, 2000ms).degraded);
   stage_.tell_degraded();
@@ -117,7 +129,7 @@ TEST_F(PanelStageTest, SaysThatCapturesAreNotKeptWhileWritesFailAndAWhileAfterEa
   const auto notice_at = [&](Nanos at) {
     const Instant now = instant_from_nanos(at.count());
     lanes_.tracker_news.post({.last_reply = now, .last_complete = now, .running = true});
-    lanes_.camera_news.post({.last_frame = now});
+    show(now);
     const Notice& notice = status_at(at, at).notice;
     return notice.level == Notice::Level::none ? std::string() : std::string(notice.text.data());
   };
