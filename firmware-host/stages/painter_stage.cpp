@@ -65,7 +65,7 @@ void PainterStage::handle(const PaintOrder& order, Instant now) noexcept {
       take_back(now);
       break;
     case PaintOrderKind::stream_end:
-      state_.streaming = false;
+      end_stream(order.request.unit, now);
       break;
     case PaintOrderKind::fail:
       fail(order, now);
@@ -141,6 +141,7 @@ void PainterStage::painted(const PaintOrder& order, bool on_surface) noexcept {
   ++state_.version;
   state_.acknowledge_pending = false;
   state_.last_refusal = Refusal::none;
+  state_.failed_at = Instant{};
   CaptureRecord record{.unit = order.request.unit,
                        .frame_sequence = order.frame.sequence,
                        .streaming = order.request.streaming,
@@ -165,7 +166,18 @@ void PainterStage::fail(const PaintOrder& order, Instant now) noexcept {
   state_.last_refusal = order.refusal;
   state_.failed_at = now;
   ++state_.refused;
+  failed_unit_ = order.request.unit;
   captures_.append({.unit = order.request.unit, .refusal = order.refusal, .edge_at = order.request.edge_at});
+}
+
+// A press that was refused is acknowledged anew as it turns into a stream; where nothing of that was painted
+// either, the failure is what stays.
+void PainterStage::end_stream(std::uint32_t unit, Instant now) noexcept {
+  state_.streaming = false;
+  state_.acknowledge_pending = false;
+  const bool painted = unit_count_ > 0 && units_[unit_count_ - 1].number == unit;
+  if (painted || failed_unit_ != unit || state_.last_refusal == Refusal::none) return;
+  state_.failed_at = now;
 }
 
 void PainterStage::take_back(Instant now) noexcept {

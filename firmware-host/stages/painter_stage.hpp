@@ -66,6 +66,7 @@ class PainterStage final : public Stage {
   void go_on() noexcept;
   void painted(const PaintOrder& order, bool on_surface) noexcept;
   void fail(const PaintOrder& order, Instant now) noexcept;
+  void end_stream(std::uint32_t unit, Instant now) noexcept;
   void take_back(Instant now) noexcept;
   void done_with(std::uint32_t buffer) noexcept;
   void upload_newest() noexcept;
@@ -89,6 +90,7 @@ class PainterStage final : public Stage {
   std::array<Unit, 64> units_{};  ///< captured and not undone, newest last
   std::uint32_t unit_count_ = 0;
   std::uint32_t cancelled_unit_ = 0, undone_unit_ = 0;  ///< the last ones: what still comes of them is let go
+  std::uint32_t failed_unit_ = 0;                       ///< the newest
   PaintOrder carried_;                                  ///< what the texel cap stopped
   bool is_carried_ = false;
   PaintState state_;

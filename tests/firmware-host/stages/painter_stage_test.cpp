@@ -136,5 +136,25 @@ TEST_F(PainterStageTest, RefusesAPictureThatIsNotTheScopesAndPaintsNoOtherInItsP
   EXPECT_EQ(all_of(lanes_.patches_home).size(), 2u);
 }
 
+TEST_F(PainterStageTest, OfAHeldPressThatPaintedNothingTheFailureStaysAndNoAcknowledgement) {
+  push({.kind = PaintOrderKind::acknowledge, .request = {.unit = 1}});
+  push({.kind = PaintOrderKind::fail, .request = {.unit = 1}, .refusal = Refusal::tool_unseen});
+  push({.kind = PaintOrderKind::acknowledge, .request = {.unit = 1, .streaming = true}});
+  EXPECT_TRUE(stage_.state().acknowledge_pending);
+  push({.kind = PaintOrderKind::stream_end, .request = {.unit = 1}});
+  EXPECT_FALSE(stage_.state().acknowledge_pending);
+  EXPECT_FALSE(stage_.state().streaming);
+  EXPECT_EQ(stage_.state().last_refusal, Refusal::tool_unseen);
+  EXPECT_EQ(stage_.state().failed_at, clock_.now() - 10ms) << "told as the stream ends";
+}
+
+TEST_F(PainterStageTest, OfAStreamThatPaintedAfterAllNoFailureIsTold) {
+  push({.kind = PaintOrderKind::fail, .request = {.unit = 1}, .refusal = Refusal::tool_unseen});
+  push({.kind = PaintOrderKind::acknowledge, .request = {.unit = 1, .streaming = true}});
+  paint(1, 60);
+  push({.kind = PaintOrderKind::stream_end, .request = {.unit = 1}});
+  EXPECT_EQ(stage_.state().failed_at, Instant{});
+}
+
 }  // namespace
 }  // namespace orcart::testing
