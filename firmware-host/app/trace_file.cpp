@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <vector>
+
+#include "firmware-host/files/whole_file.hpp"
 
 namespace orcart {
 namespace {
@@ -148,17 +149,8 @@ std::string trace_of(const Cart& cart) {
 }
 
 Result<void> write_trace(const std::filesystem::path& file, const Cart& cart) {
-  const std::filesystem::path beside = file.string() + ".part";
-  {
-    std::ofstream out(beside, std::ios::binary);
-    out << trace_of(cart);
-    if (!out.flush())
-      return fail("the trace " + file.string() +
-                  " cannot be written; give --trace a file in a folder with room that you may write to");
-  }
-  std::error_code error;
-  std::filesystem::rename(beside, file, error);
-  if (error) return fail("the trace " + file.string() + " cannot be replaced: " + error.message());
+  auto written = write_whole_file(file, trace_of(cart));
+  if (!written) return fail("the trace: " + written.error().message);
   return {};
 }
 

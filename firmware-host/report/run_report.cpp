@@ -2,9 +2,9 @@
 #include "firmware-host/report/run_report.hpp"
 
 #include <cstdio>
-#include <fstream>
 #include <sstream>
 
+#include "firmware-host/files/whole_file.hpp"
 #include "firmware-host/report/svg.hpp"
 
 namespace orcart {
@@ -273,28 +273,14 @@ std::string json_of(const RunReport& r) {
   return out + "\n}\n";
 }
 
-Result<void> write_whole(const std::filesystem::path& file, const std::string& content) {
-  const std::filesystem::path beside = file.string() + ".part";
-  {
-    std::ofstream out(beside, std::ios::binary);
-    out << content;
-    if (!out.flush())
-      return fail(beside.string() + " cannot be written; give a folder with room that you may write to");
-  }
-  std::error_code error;
-  std::filesystem::rename(beside, file, error);
-  if (error) return fail(file.string() + " cannot be replaced: " + error.message());
-  return {};
-}
-
 }  // namespace
 
 Result<void> write_report(const std::filesystem::path& dir, const RunReport& report) {
   std::error_code error;
   std::filesystem::create_directories(dir, error);
   if (error) return fail("the report's folder " + dir.string() + " cannot be made: " + error.message());
-  if (auto page = write_whole(dir / "report.html", page_of(report)); !page) return page;
-  return write_whole(dir / "report.json", json_of(report));
+  if (auto page = write_whole_file(dir / "report.html", page_of(report)); !page) return page;
+  return write_whole_file(dir / "report.json", json_of(report));
 }
 
 std::string summary_of(const RunReport& r, const std::filesystem::path& dir) {

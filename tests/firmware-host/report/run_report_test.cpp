@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "tests/firmware-host/session/full_disk.hpp"
+
 namespace orcart {
 namespace {
 
@@ -81,6 +83,15 @@ TEST(Summary, QuotesNoPercentileTwice) {
   const std::string text = summary_of(report, {});
   EXPECT_NE(text.find("few: p50 2.0 ms of 20.\n"), std::string::npos);
   EXPECT_NE(text.find("many: p50 2.0 ms, p90 3.0 ms of 2000.\n"), std::string::npos);
+}
+
+TEST_F(Report, LeavesNoHalfOfItselfOnAFullDisk) {
+  std::filesystem::create_directories(dir_);
+  {
+    const testing::FullDisk full(100);
+    EXPECT_FALSE(write_report(dir_, {}).has_value());
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(dir_));
 }
 
 TEST_F(Report, SaysWhereItCannotWrite) {
