@@ -164,13 +164,6 @@ Result<StoredPicture> SessionReader::picture(std::int64_t capture_id) {
   return picture;
 }
 
-Result<std::vector<SessionEvent>> SessionReader::events() {
-  return all_rows<SessionEvent>(database_, "SELECT at_ns, kind, text FROM events ORDER BY id",
-                                [](const Statement& row) {
-                                  return SessionEvent{row.instant(0), row.text(1), row.text(2)};
-                                });
-}
-
 Result<std::vector<SessionBudget>> SessionReader::budgets() {
   return all_rows<SessionBudget>(
       database_, "SELECT stage, count, p50_ns, p99_ns, max_ns, misses FROM budgets ORDER BY rowid",

@@ -21,7 +21,6 @@ class SessionReader {
   Result<std::vector<StoredCapture>> captures();
   /// Refuses a picture whose checksum is wrong, by the capture's number.
   Result<StoredPicture> picture(std::int64_t capture_id);
-  Result<std::vector<SessionEvent>> events();
   Result<std::vector<SessionBudget>> budgets();
   /// Goes through the whole file; the error names what is damaged.
   Result<void> check();

@@ -73,12 +73,6 @@ struct StoredPicture {
   ImageDescriptor descriptor() { return packed_image(bytes.data(), format, width_px, height_px); }
 };
 
-struct SessionEvent {
-  Instant at{};
-  std::string kind;
-  std::string text;
-};
-
 /// How a stage kept its budget over the session.
 struct SessionBudget {
   std::string stage;

@@ -7,7 +7,8 @@ namespace orcart {
 
 inline constexpr std::int64_t kSessionApplicationId = 0x6F726374;  ///< "orct", in the file's own header
 inline constexpr std::int64_t kSessionSchemaVersion =
-    3;  ///< PRAGMA user_version; 1 had no turn_rad, 2 no velocity
+    3;  ///< PRAGMA user_version; 1 had no turn_rad, 2 no velocity; older files also have a table that nothing
+        ///< wrote
 
 /// Times are nanoseconds on the monotonic clock; m00..m23 the rows of X_MC as in views.csv, millimetres;
 /// v0..v5 a twist of C a second (mm/s, rad/s), NULL where it is not known.
@@ -25,7 +26,6 @@ CREATE INDEX captures_by_unit ON captures(unit);
 CREATE TABLE pictures(
   capture INTEGER PRIMARY KEY REFERENCES captures(id), width_px INTEGER, height_px INTEGER, fourcc INTEGER,
   encoding TEXT, bytes BLOB);
-CREATE TABLE events(id INTEGER PRIMARY KEY, at_ns INTEGER, kind TEXT, text TEXT);
 CREATE TABLE budgets(
   stage TEXT PRIMARY KEY, count INTEGER, p50_ns INTEGER, p99_ns INTEGER, max_ns INTEGER, misses INTEGER);
 )sql";

@@ -108,14 +108,11 @@ Result<SessionWriter::Statements> SessionWriter::prepare(Database& database) {
   if (!picture) return tl::unexpected(picture.error());
   auto undone = database.prepare("UPDATE captures SET undone = 1 WHERE unit = ?1");
   if (!undone) return tl::unexpected(undone.error());
-  auto event = database.prepare("INSERT INTO events(at_ns, kind, text) VALUES(?1, ?2, ?3)");
-  if (!event) return tl::unexpected(event.error());
   auto budget = database.prepare("INSERT OR REPLACE INTO budgets VALUES(?1, ?2, ?3, ?4, ?5, ?6)");
   if (!budget) return tl::unexpected(budget.error());
   return Statements{.capture = std::move(*capture),
                     .picture = std::move(*picture),
                     .undone = std::move(*undone),
-                    .event = std::move(*event),
                     .budget = std::move(*budget)};
 }
 
@@ -125,11 +122,6 @@ Result<void> SessionWriter::write_calibration(const SessionCalibration& calibrat
   if (!statement) return tl::unexpected(statement.error());
   const std::string_view scope = calibration.scope_toml, registration = calibration.registration_toml;
   return done(statement->with(scope, registration, std::string_view(calibration.surface_hash)).step());
-}
-
-Result<void> SessionWriter::write_event(const SessionEvent& event) {
-  return done(
-      statements_.event.with(event.at, std::string_view(event.kind), std::string_view(event.text)).step());
 }
 
 Result<void> SessionWriter::write_budgets(std::span<const SessionBudget> budgets) {

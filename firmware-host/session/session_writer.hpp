@@ -24,7 +24,6 @@ class SessionWriter {
   static Result<SessionWriter> create(const std::filesystem::path& file, const SessionMeta& meta);
 
   Result<void> write_calibration(const SessionCalibration& calibration);
-  Result<void> write_event(const SessionEvent& event);
   /// Replaces what was said of the same stages before.
   Result<void> write_budgets(std::span<const SessionBudget> budgets);
   /// Takes everything that waits, in one transaction, durable on return; gives every slot back whatever
@@ -42,7 +41,7 @@ class SessionWriter {
 
  private:
   struct Statements {
-    Statement capture, picture, undone, event, budget;
+    Statement capture, picture, undone, budget;
   };
   SessionWriter(std::filesystem::path file, Database database, Statements statements);
   static Result<Statements> prepare(Database& database);

@@ -109,12 +109,11 @@ TEST_F(SessionFile, MarksEveryPictureOfAnUndoneUnitAndNoOther) {
   EXPECT_TRUE(captures->at(2).undone);
 }
 
-TEST_F(SessionFile, KeepsMetaCalibrationEventsAndBudgets) {
+TEST_F(SessionFile, KeepsMetaCalibrationAndBudgets) {
   SessionWriter session = writer();
   ASSERT_TRUE(session.write_calibration({.scope_toml = "old"}));
   ASSERT_TRUE(session.write_calibration(
       {.scope_toml = "name = \"30 degree\"", .registration_toml = "fre_mm = 0.4", .surface_hash = "cafe"}));
-  ASSERT_TRUE(session.write_event({.at = instant_from_nanos(5), .kind = "pedal", .text = "stuck"}));
   const std::vector<SessionBudget> first{{.stage = "mapper", .count = 1}};
   const std::vector<SessionBudget> budgets{
       {.stage = "mapper", .count = 9, .p50 = 1ms, .p99 = 2ms, .max = 3ms, .misses = 4}, {.stage = "panel"}};
@@ -132,9 +131,6 @@ TEST_F(SessionFile, KeepsMetaCalibrationEventsAndBudgets) {
   EXPECT_DOUBLE_EQ(read.meta()->turn_deviation_rad.value(), 0.0025);
   EXPECT_EQ(read.calibration()->scope_toml, "name = \"30 degree\"");
   EXPECT_EQ(read.calibration()->surface_hash, "cafe");
-  ASSERT_EQ(read.events()->size(), 1U);
-  EXPECT_EQ(read.events()->front().text, "stuck");
-  EXPECT_EQ(read.events()->front().at, instant_from_nanos(5));
   ASSERT_EQ(read.budgets()->size(), 2U);
   EXPECT_EQ(read.budgets()->front().stage, "mapper");
   EXPECT_EQ(read.budgets()->front().p99, 2ms);
@@ -311,7 +307,7 @@ TEST_F(SessionFile, ReturnsAnErrorOnAFullDiskLosesNothingWrittenAndGoesOnWhenThe
     const auto written = session.write_pending(slots_);
     ASSERT_FALSE(written);
     EXPECT_TRUE(written.error().message.starts_with(file_.string())) << written.error().message;
-    EXPECT_FALSE(session.write_event({.kind = "x"}));
+    EXPECT_EQ(session.lost(), 2U);
   }
   for (std::uint32_t i = 4; i < 8; ++i) offer(i);  // every slot came home
   ASSERT_EQ(session.write_pending(slots_), 4U);
