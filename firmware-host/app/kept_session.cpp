@@ -1,8 +1,7 @@
 // Texts of the files as they are, ledgers into rows.
 #include "firmware-host/app/kept_session.hpp"
 
-#include <cstdio>
-
+#include "firmware-host/app/content_hash.hpp"
 #include "firmware-host/app/turn_deviation.hpp"
 #include "firmware-host/files/whole_file.hpp"
 
@@ -15,15 +14,6 @@ Result<std::string> text_of(const std::filesystem::path& file) {
   auto bytes = read_whole_file(file, kLargestText);
   if (!bytes) return tl::unexpected(bytes.error());
   return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-}
-
-/// FNV-1a, 64 bits.
-std::string hash_of(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  char hex[17];
-  std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(hash));
-  return hex;
 }
 
 // Too few samples for the percentile: the longest stands for it.

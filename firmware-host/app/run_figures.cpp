@@ -10,6 +10,8 @@
 #include <fstream>
 #include <map>
 
+#include "firmware-host/app/content_hash.hpp"
+
 namespace orcart {
 namespace {
 
@@ -155,15 +157,6 @@ std::string machine_name() {
     }
   }
   return processor + ", " + std::to_string(sysconf(_SC_NPROCESSORS_ONLN)) + " cores, Linux " + name.release;
-}
-
-/// FNV-1a over the painting's bytes.
-std::string hash_of(const std::vector<std::uint8_t>& bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const std::uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001b3;
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
 }
 
 std::string date_now() {

@@ -1,31 +1,10 @@
 // A mapper of its own gives each view's cutout in paper mode.
 #include "firmware-host/offline/difference_map.hpp"
 
-#include <algorithm>
-
 #include "firmware-host/offline/texel_values.hpp"
 #include "realtime/optics/scope_turn.hpp"
 
 namespace orcart {
-namespace {
-
-/// The mean, 95th percentile and maximum of what is not outside.
-ModeDifference figures_of(std::vector<float> displacement_mm, std::size_t lost) {
-  ModeDifference figures{.displacement_mm = std::move(displacement_mm), .lost = lost};
-  std::vector<float> sorted;
-  for (const float mm : figures.displacement_mm)
-    if (mm >= 0) sorted.push_back(mm);
-  if (sorted.empty()) return figures;
-  std::sort(sorted.begin(), sorted.end());
-  figures.texels = sorted.size();
-  for (const float mm : sorted)
-    figures.mean_mm += static_cast<double>(mm) / static_cast<double>(sorted.size());
-  figures.p95_mm = static_cast<double>(sorted[sorted.size() * 95 / 100]);
-  figures.max_mm = static_cast<double>(sorted.back());
-  return figures;
-}
-
-}  // namespace
 
 DifferenceMap::DifferenceMap(const Surface& surface, const ScopeModel& scope, const AtlasLayout& layout,
                              RayScene rays, Mapper mapper, const MapperLimits& limits)

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "realtime/mapper/paper_coordinates.hpp"
 
@@ -21,29 +23,20 @@ class Differ {
   ModeDifference all() {
     std::vector<std::uint8_t> in_cutout(mesh_.triangles.size(), 0);
     for (const std::uint32_t triangle : view_.triangles) in_cutout[triangle] = 1;
-    ModeDifference difference;
-    difference.displacement_mm.assign(layout_.owners.size(), ModeDifference::kOutside);
-    std::vector<float> sorted;
+    std::vector<float> displacement_mm(layout_.owners.size(), ModeDifference::kOutside);
+    std::size_t lost = 0;
     for (std::size_t i = 0; i < layout_.owners.size(); ++i) {
       if (layout_.inside[i] == 0 || in_cutout[layout_.owners[i].triangle] == 0) continue;
       const Eigen::Vector3f p = point_of(layout_.owners[i]);
       if (!in_sight(p)) continue;
       const auto shown = shown_at(layout_.owners[i]);
       if (!shown) {
-        ++difference.lost;
+        ++lost;
         continue;
       }
-      difference.displacement_mm[i] = (*shown - p).norm();
-      sorted.push_back(difference.displacement_mm[i]);
-      difference.mean_mm += static_cast<double>(sorted.back());
+      displacement_mm[i] = (*shown - p).norm();
     }
-    if (sorted.empty()) return difference;
-    std::sort(sorted.begin(), sorted.end());
-    difference.texels = sorted.size();
-    difference.mean_mm /= static_cast<double>(sorted.size());
-    difference.p95_mm = sorted[sorted.size() * 95 / 100];
-    difference.max_mm = sorted.back();
-    return difference;
+    return figures_of(std::move(displacement_mm), lost);
   }
 
  private:
@@ -89,6 +82,21 @@ class Differ {
 };
 
 }  // namespace
+
+ModeDifference figures_of(std::vector<float> displacement_mm, std::size_t lost) {
+  ModeDifference figures{.displacement_mm = std::move(displacement_mm), .lost = lost};
+  std::vector<float> sorted;
+  for (const float mm : figures.displacement_mm)
+    if (mm >= 0) sorted.push_back(mm);
+  if (sorted.empty()) return figures;
+  std::sort(sorted.begin(), sorted.end());
+  figures.texels = sorted.size();
+  for (const float mm : sorted)
+    figures.mean_mm += static_cast<double>(mm) / static_cast<double>(sorted.size());
+  figures.p95_mm = static_cast<double>(sorted[sorted.size() * 95 / 100]);
+  figures.max_mm = static_cast<double>(sorted.back());
+  return figures;
+}
 
 ModeDifference difference_between_modes(const TriangleMesh& mesh, const RayScene& rays,
                                         const AtlasLayout& layout, const CutoutPatch& view, double far_mm) {

@@ -22,6 +22,10 @@ struct ModeDifference {
   static constexpr float kOutside = -1;
 };
 
+/// The figures of displacements of the texels: count, mean, 95th percentile and maximum of what is not
+/// outside.
+ModeDifference figures_of(std::vector<float> displacement_mm, std::size_t lost);
+
 /// Over the cutout's texels that a point in sight stands behind; `view` is one whole part in paper mode,
 /// valid. Not real-time. A pinhole, as paper mode's own picture is rectified.
 ModeDifference difference_between_modes(const TriangleMesh& mesh, const RayScene& rays,
