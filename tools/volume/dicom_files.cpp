@@ -110,14 +110,24 @@ Result<std::vector<DicomSlice>> read_header(const Named& named) {
   return slices;
 }
 
-std::vector<Named> files_at(const std::filesystem::path& path) {
+/// A folder in it that cannot be listed is refused: slices would be missing without a word.
+Result<std::vector<Named>> files_at(const std::filesystem::path& path) {
   std::vector<Named> files;
-  if (!std::filesystem::is_directory(path)) return {{.file = path, .name = path.filename().string()}};
   std::error_code error;
-  for (auto entry = std::filesystem::recursive_directory_iterator(path, error);
-       entry != std::filesystem::recursive_directory_iterator() && !error; entry.increment(error))
-    if (entry->is_regular_file())
+  if (!std::filesystem::is_directory(path, error))
+    return std::vector<Named>{{.file = path, .name = path.filename().string()}};
+  auto entry = std::filesystem::recursive_directory_iterator(path, error);
+  std::filesystem::path last = path;
+  while (!error && entry != std::filesystem::recursive_directory_iterator()) {
+    std::error_code unknown;  // such as a link that leads nowhere
+    last = entry->path();
+    if (entry->is_regular_file(unknown))
       files.push_back({.file = entry->path(), .name = entry->path().lexically_relative(path).string()});
+    entry.increment(error);
+  }
+  if (error)
+    return fail(last.string() + ": cannot be listed: " + error.message() +
+                "; slices may lie there, so a folder that can be read whole is expected");
   std::sort(files.begin(), files.end(), [](const Named& a, const Named& b) { return a.file < b.file; });
   return files;
 }
@@ -134,9 +144,10 @@ Result<DicomFolder> read_dicom_headers(const std::filesystem::path& path) {
   gdcm::Trace::SetWarning(false);
   gdcm::Trace::SetError(false);
   const auto files = files_at(path);
+  if (!files) return tl::unexpected(files.error());
   DicomFolder found;
   std::size_t others = 0;
-  for (const auto& named : files) {
+  for (const auto& named : *files) {
     auto slices = is_dicom(named.file) ? read_header(named) : Result<std::vector<DicomSlice>>();
     if (!slices) return tl::unexpected(slices.error());
     if (is_image(*slices))
@@ -145,7 +156,7 @@ Result<DicomFolder> read_dicom_headers(const std::filesystem::path& path) {
       ++others;
   }
   if (found.slices.empty())
-    return fail(path.string() + ": holds " + std::to_string(files.size()) +
+    return fail(path.string() + ": holds " + std::to_string(files->size()) +
                 " files and no DICOM image; a folder with the slices of a series is expected");
   if (others > 0)
     found.notes.push_back(std::to_string(others) + " files beside the slices are no DICOM images");

@@ -54,15 +54,19 @@ struct DicomStack {
   std::vector<DicomSlice> slices;
   VoxelLattice lattice;
   std::vector<std::string> notes;
+  std::string fault;  ///< why it is no volume; empty: it is one
 };
 
 /// Groups by series, orientation, size, variant and facets, sorts each along its normal and cuts it where
-/// slices are missing (a gap of over 1.5 times the usual). A slice at the place of another is refused where
-/// nothing in the headers tells them apart, but a second copy of one image is left out; so are two patients.
+/// slices are missing (a gap of over 1.5 times the usual). A stack has a fault where a slice lies at the
+/// place of another and nothing in the headers tells them apart, or where slices lie more than a quarter of a
+/// step from an even spacing. A second copy of one image is left out, and so are images without a place,
+/// which all stacks tell; two patients, images of which none has a place and frames without one are refused.
 /// Stacks in the order of their slice count, the largest first; a lone slice is a stack too.
 Result<std::vector<DicomStack>> stack_slices(const std::string& folder, std::vector<DicomSlice> slices);
 
-/// The stack that `wanted` (from 1) names; 0: the only one with more than one slice. Refuses with the list.
+/// The stack that `wanted` (from 1) names; 0: the only one with more than one slice and no fault, if nothing
+/// else is of its series and orientation. Refuses with the list; one with a fault is refused with that.
 Result<DicomStack> choose_stack(const std::string& folder, std::vector<DicomStack> stacks, int wanted);
 
 }  // namespace orcart

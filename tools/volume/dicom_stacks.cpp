@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -39,6 +40,17 @@ double median(std::vector<double> numbers) {
   return *middle;
 }
 
+/// The least and the most that neighbours are apart along the normal, mm.
+std::pair<double, double> steps_of(const std::vector<DicomSlice>& slices, const PlainPoint& normal) {
+  double least = std::numeric_limits<double>::max(), most = 0;
+  for (std::size_t i = 1; i < slices.size(); ++i) {
+    const double step = height_mm(slices[i], normal) - height_mm(slices[i - 1], normal);
+    least = std::min(least, step);
+    most = std::max(most, step);
+  }
+  return {least, most};
+}
+
 DicomStack stack_of(std::vector<DicomSlice> slices) {
   const DicomSlice& first = slices.front();
   const DicomSlice& last = slices.back();
@@ -61,7 +73,12 @@ DicomStack stack_of(std::vector<DicomSlice> slices) {
       worst_mm = std::max(worst_mm, std::abs(expected[row] - slices[i].position_mm[row]));
   }
   const double step_mm = step_length_mm(stack.lattice, 2);
-  if (worst_mm > 0.02 * step_mm)
+  constexpr double kMostUneven = 0.25;
+  if (slices.size() > 2 && worst_mm > kMostUneven * step_mm) {
+    const auto [least, most] = steps_of(slices, normal);
+    stack.fault = "its slices are " + millimetres(least) + " to " + millimetres(most) + " apart, up to " +
+                  millimetres(worst_mm) + " from an even spacing; a series of one spacing is expected";
+  } else if (worst_mm > 0.02 * step_mm)
     stack.notes.push_back("slices lie up to " + millimetres(worst_mm) + " from an even spacing of " +
                           millimetres(step_mm) + "; they are taken as evenly spaced");
   const double upright = slices.size() > 1 ? std::abs(dot(stack.lattice.step_mm[2], normal)) / step_mm : 1;
@@ -79,8 +96,7 @@ std::string short_name(const DicomSlice& slice) {
 }
 
 /// Cuts one group, sorted along its normal, at its gaps.
-Result<void> cut_at_gaps(const std::string& folder, std::vector<DicomSlice> group,
-                         std::vector<DicomStack>& stacks) {
+void cut_at_gaps(std::vector<DicomSlice> group, std::vector<DicomStack>& stacks) {
   const PlainPoint normal = normal_of(group.front());
   const auto height = [&](const DicomSlice& slice) { return height_mm(slice, normal); };
   std::stable_sort(group.begin(), group.end(),
@@ -88,10 +104,13 @@ Result<void> cut_at_gaps(const std::string& folder, std::vector<DicomSlice> grou
   std::vector<double> steps;
   for (std::size_t i = 1; i < group.size(); ++i) {
     steps.push_back(height(group[i]) - height(group[i - 1]));
-    if (steps.back() < kSamePlaceMm)
-      return fail(folder + ": " + short_name(group[i - 1]) + " and " + short_name(group[i]) +
-                  " lie at the same place and nothing in them says why; one volume (one series, one time, "
-                  "one echo) is expected");
+    if (steps.back() >= kSamePlaceMm) continue;
+    std::string fault = short_name(group[i - 1]) + " and " + short_name(group[i]) +
+                        " lie at the same place and nothing in them says why; one volume (one series, one "
+                        "time, one echo) is expected";
+    stacks.push_back(stack_of(std::move(group)));
+    stacks.back().fault = std::move(fault);
+    return;
   }
   const double usual = steps.empty() ? 0 : median(steps);
   std::vector<DicomSlice> part;
@@ -100,7 +119,6 @@ Result<void> cut_at_gaps(const std::string& folder, std::vector<DicomSlice> grou
     part.push_back(std::move(group[i]));
   }
   stacks.push_back(stack_of(std::move(part)));
-  return {};
 }
 
 std::string describe(const DicomStack& stack) {
@@ -115,7 +133,31 @@ std::string describe(const DicomStack& stack) {
   if (!first.series.empty())
     said += ", series ..." +
             first.series.substr(first.series.size() - std::min<std::size_t>(first.series.size(), 12));
+  if (!stack.fault.empty()) said += ", no volume: " + stack.fault;
   return said;
+}
+
+/// Whether two stacks could be one volume of which slices are missing.
+bool of_one_scan(const DicomStack& a, const DicomStack& b) {
+  const DicomSlice &first = a.slices.front(), &second = b.slices.front();
+  constexpr double kSameDirection = 0.9999;
+  return first.series == second.series && dot(first.along_columns, second.along_columns) > kSameDirection &&
+         dot(first.along_rows, second.along_rows) > kSameDirection;
+}
+
+/// Leaves out and counts images without a place. Refuses where nothing is left, and a frame without one: it
+/// is missing from among others.
+Result<std::size_t> drop_placeless(std::vector<DicomSlice>& slices) {
+  const auto placeless = [](const DicomSlice& slice) { return !slice.has_position; };
+  const auto is_frame = [](const DicomSlice& slice) { return !slice.has_position && slice.frame > 0; };
+  auto first = std::find_if(slices.begin(), slices.end(), is_frame);
+  const bool all = std::all_of(slices.begin(), slices.end(), placeless);
+  if (all) first = slices.begin();
+  if (first != slices.end())
+    return fail(name_of(*first) +
+                ": states no ImagePositionPatient and ImageOrientationPatient; slices that say where they "
+                "lie are expected (a secondary capture has no place)");
+  return std::erase_if(slices, placeless);
 }
 
 /// A scanner that steps or pauses counts acquisitions up within one volume; one that scans twice, with and
@@ -199,22 +241,21 @@ Result<std::vector<DicomStack>> stack_slices(const std::string& folder, std::vec
     return fail(folder + ": holds images of " + std::to_string(patients.size()) +
                 " patients; the images of one are expected");
   const std::size_t copies = drop_copies(slices);
+  const auto placeless = drop_placeless(slices);
+  if (!placeless) return tl::unexpected(placeless.error());
   std::map<std::string, std::vector<DicomSlice>> groups;
-  for (DicomSlice& slice : slices) {
-    if (!slice.has_position)
-      return fail(name_of(slice) +
-                  ": states no ImagePositionPatient and ImageOrientationPatient; slices that say where they "
-                  "lie are expected (a secondary capture has no place)");
-    groups[kind_of(slice)].push_back(std::move(slice));
-  }
+  for (DicomSlice& slice : slices) groups[kind_of(slice)].push_back(std::move(slice));
   std::vector<DicomStack> stacks;
   for (auto& [kind, group] : groups)
-    for (auto& part : volumes_of(std::move(group)))
-      if (auto cut = cut_at_gaps(folder, std::move(part), stacks); !cut) return tl::unexpected(cut.error());
-  if (copies > 0)
-    for (DicomStack& stack : stacks)
+    for (auto& part : volumes_of(std::move(group))) cut_at_gaps(std::move(part), stacks);
+  for (DicomStack& stack : stacks) {
+    if (copies > 0)
       stack.notes.push_back(std::to_string(copies) +
                             " images are in the folder twice; one of each was taken");
+    if (*placeless > 0)
+      stack.notes.push_back(std::to_string(*placeless) +
+                            " images that do not say where they lie (secondary captures?) were left out");
+  }
   std::stable_sort(stacks.begin(), stacks.end(), [](const DicomStack& a, const DicomStack& b) {
     return a.slices.size() > b.slices.size();
   });
@@ -222,17 +263,34 @@ Result<std::vector<DicomStack>> stack_slices(const std::string& folder, std::vec
 }
 
 Result<DicomStack> choose_stack(const std::string& folder, std::vector<DicomStack> stacks, int wanted) {
-  const auto thick = std::count_if(stacks.begin(), stacks.end(),
-                                   [](const DicomStack& stack) { return stack.slices.size() > 1; });
-  if (wanted == 0 && thick == 1) {
-    DicomStack chosen = std::move(stacks.front());
-    if (stacks.size() > 1)
-      chosen.notes.push_back(std::to_string(stacks.size() - 1) +
-                             " single images that belong to no stack (a localizer?) were left out");
-    return chosen;
+  const auto is_thick = [](const DicomStack& stack) { return stack.slices.size() > 1; };
+  const auto is_volume = [&](const DicomStack& stack) { return is_thick(stack) && stack.fault.empty(); };
+  const auto thick = std::count_if(stacks.begin(), stacks.end(), is_thick);
+  if (wanted >= 1 && static_cast<std::size_t>(wanted) <= stacks.size()) {
+    DicomStack& named = stacks[static_cast<std::size_t>(wanted) - 1];
+    if (!named.fault.empty()) return fail(folder + ": stack " + std::to_string(wanted) + ": " + named.fault);
+    return std::move(named);
   }
-  if (wanted >= 1 && static_cast<std::size_t>(wanted) <= stacks.size())
-    return std::move(stacks[static_cast<std::size_t>(wanted) - 1]);
+  if (wanted == 0 && stacks.size() == 1 && !stacks.front().fault.empty())
+    return fail(folder + ": " + stacks.front().fault);
+  if (wanted == 0 && std::count_if(stacks.begin(), stacks.end(), is_volume) == 1) {
+    const auto only = std::find_if(stacks.begin(), stacks.end(), is_volume);
+    const auto stranger = [&](const DicomStack& other) {
+      return &other == &*only || !of_one_scan(other, *only);
+    };
+    if (std::all_of(stacks.begin(), stacks.end(), stranger)) {
+      DicomStack chosen = std::move(*only);
+      const std::size_t faulty = static_cast<std::size_t>(thick) - 1, lone = stacks.size() - 1 - faulty;
+      if (lone > 0)
+        chosen.notes.push_back(std::to_string(lone) +
+                               " single images that belong to no stack (a localizer?) were left out");
+      for (const DicomStack& other : stacks)
+        if (!other.fault.empty())
+          chosen.notes.push_back(std::to_string(other.slices.size()) +
+                                 " images of another series were left out: " + other.fault);
+      return chosen;
+    }
+  }
   if (thick == 0)
     return fail(folder + ": holds " + std::to_string(stacks.size()) +
                 " DICOM image(s), none beside another; a stack of slices is expected");

@@ -1,4 +1,6 @@
 // A folder of DICOM slices becomes a volume in Hounsfield and LPS, or one clear sentence.
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include "tests/tools/volume/dicom_sample.hpp"
@@ -59,6 +61,35 @@ TEST(DicomFiles, OneCutShortIsRefusedByName) {
   expect_refused(folder, "broken");
   folder.write("broken", whole.substr(0, 300));
   expect_refused(folder, "broken");
+}
+
+TEST(DicomFiles, OneCutShortBehindASequenceWithoutALengthIsRefusedByName) {
+  const TemporaryFolder folder;
+  write_series(folder, 3);
+  std::string whole = DicomSample{.position = "-10\\-20\\6"}.bytes();
+  const std::string patient = DicomBytes::text(0x10, 0x20, "LO", "P1");
+  whole.insert(whole.find(patient), DicomBytes::open_ended(8, 0x1140, "SQ", ""));
+  folder.write("whole", whole);
+  EXPECT_TRUE(read_volume({.path = path_of(folder)}));
+  folder.write("whole", whole.substr(0, whole.size() - 9));
+  expect_refused(folder, "whole");
+}
+
+TEST(DicomFiles, AFolderInItThatCannotBeListedIsRefused) {
+  const TemporaryFolder folder;
+  write_series(folder, 3);
+  std::filesystem::create_directory(folder / "more");
+  std::filesystem::permissions(folder / "", std::filesystem::perms(0755));
+  std::filesystem::permissions(folder / "more", std::filesystem::perms::none);
+  constexpr uid_t kNobody = 65534;
+  const bool root = ::geteuid() == 0;  // whom nothing is shut to
+  ASSERT_TRUE(!root || ::seteuid(kNobody) == 0);
+  const auto volume = read_volume({.path = path_of(folder)});
+  ASSERT_TRUE(!root || ::seteuid(0) == 0);
+  std::filesystem::permissions(folder / "more", std::filesystem::perms::owner_all);
+  ASSERT_FALSE(volume);
+  EXPECT_NE(volume.error().message.find("more: cannot be listed: Permission denied"), std::string::npos)
+      << volume.error().message;
 }
 
 TEST(DicomFiles, TwoPatientsAndManyFramesAreRefused) {

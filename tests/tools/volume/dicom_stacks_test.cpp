@@ -131,10 +131,45 @@ TEST(DicomStacks, TwoPatientsAreRefused) {
   expect_refused(chosen(all), "images of 2 patients; the images of one are expected");
 }
 
-TEST(DicomStacks, ASliceWithoutAPlaceIsRefused) {
-  auto all = slices({1, 2});
-  all[1].has_position = false;
-  expect_refused(chosen(all), "z2.000000.dcm: states no ImagePositionPatient");
+TEST(DicomStacks, ASliceWithoutAPlaceIsLeftOutAndToldUnlessNothingIsLeft) {
+  auto all = slices({1, 2, 3});
+  all[2].has_position = false;
+  const auto stack = chosen(all);
+  ASSERT_TRUE(stack) << stack.error().message;
+  EXPECT_EQ(stack->slices.size(), 2U);
+  ASSERT_EQ(stack->notes.size(), 1U);
+  EXPECT_NE(stack->notes[0].find("1 images that do not say where they lie"), std::string::npos);
+  for (DicomSlice& one : all) one.has_position = false;
+  expect_refused(chosen(all), "z1.000000.dcm: states no ImagePositionPatient");
+}
+
+TEST(DicomStacks, TwoSpacingsInOneSeriesAreRefused) {
+  std::vector<DicomSlice> few_thin, few_thick;
+  for (int i = 0; i < 12; ++i) few_thin.push_back(slice(2.5 * i));
+  for (int i = 1; i <= 20; ++i) few_thin.push_back(slice(27.5 + 5 * i));
+  expect_refused(chosen(few_thin), "its slices are 2.5 mm to 5 mm apart");
+  expect_refused(chosen(few_thin, 1), "stack 1: its slices are 2.5 mm to 5 mm apart");
+  for (int i = 0; i < 30; ++i) few_thick.push_back(slice(2.5 * i));
+  for (int i = 1; i <= 15; ++i) few_thick.push_back(slice(72.5 + 5 * i));
+  expect_refused(chosen(few_thick), "is no single volume but 16 stacks (slices missing between them");
+  EXPECT_EQ(chosen(few_thick, 1)->slices.size(), 30U);
+}
+
+TEST(DicomStacks, ALoneImageOfTheSeriesBeyondAGapIsNotLeftOut) {
+  expect_refused(chosen(slices({1, 2, 3, 9})), "2 stacks (slices missing between them");
+}
+
+TEST(DicomStacks, ASeriesThatIsNoVolumeHindersNoOther) {
+  auto all = slices({1, 2, 3});
+  for (const double z : {1, 5, 9, 1, 5, 9}) all.push_back(slice(z, "9.8.7"));
+  const auto stack = chosen(all);
+  ASSERT_TRUE(stack) << stack.error().message;
+  EXPECT_EQ(stack->slices.size(), 3U);
+  ASSERT_EQ(stack->notes.size(), 1U);
+  EXPECT_NE(stack->notes[0].find("6 images of another series were left out: z1.0"), std::string::npos)
+      << stack->notes[0];
+  EXPECT_TRUE(chosen(all, 2));
+  expect_refused(chosen(all, 1), "stack 1: z1.000000.dcm and z1.000000.dcm lie at the same place");
 }
 
 TEST(DicomStacks, ATiltedGantryIsKeptAndTold) {
