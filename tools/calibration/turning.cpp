@@ -23,6 +23,7 @@ namespace {
 constexpr std::size_t kFewestPictures = 3, kFewestShared = 6;
 constexpr double kLeastRange_rad = 40 * std::numbers::pi / 180, kLargestRms_px = 1, kLeastSure_px = 1;
 constexpr double kMarkerAgrees_rad = std::numbers::pi / 180, kNormal95 = 1.96;
+constexpr double kClearly = 4;  ///< in squares: that one sign of an axis fits better than the other
 
 double wrapped(double angle) {
   return std::remainder(angle, 2 * std::numbers::pi);
@@ -151,6 +152,20 @@ Result<PictureFit> fit_pictures(const std::vector<TurnSight>& sights, double asp
   return fit;
 }
 
+/// Mean square of how far a marker on the head turns otherwise about an axis than the pictures do.
+double angles2_about(const Eigen::Vector3d& axis, const std::vector<TurnSight>& sights,
+                     const TurningFit& fit) {
+  double angles2 = 0;
+  for (std::size_t k = 1; k < sights.size(); ++k) {
+    const Eigen::Matrix3d moved = sights[0].X_TS->rotation.transpose() * sights[k].X_TS->rotation;
+    const Eigen::Matrix3d expected =
+        Eigen::AngleAxisd(-wrapped(fit.turns_rad[k] - fit.turns_rad[0]), axis).toRotationMatrix();
+    const double off = Eigen::AngleAxisd(Eigen::Matrix3d(moved.transpose() * expected)).angle();
+    angles2 += off * off / static_cast<double>(sights.size() - 1);
+  }
+  return angles2;
+}
+
 /// The axis that the marker's poses leave fixed. The scope stands still in T, so X_TS(k) A(turn k) is the
 /// same for all: the marker turns by minus the picture's turn.
 Result<void> fit_axis(const std::vector<TurnSight>& sights, const TurningTask& task, TurningFit& fit) {
@@ -170,15 +185,16 @@ Result<void> fit_axis(const std::vector<TurnSight>& sights, const TurningTask& t
   // The point of least squares across the axis; along it nothing is told, and the origin's height is taken.
   const Eigen::MatrixXd across = svd.matrixV().leftCols(2);
   turning.axis_point_mm = across * (fixed_way * across).colPivHouseholderQr().solve(shift);
+  // A view of over 90 degrees looks back along the shaft, so it is the turns that tell which way the axis
+  // goes, unless all are half turns.
   if (turning.axis.dot(task.view_S) < 0) turning.axis = -turning.axis;
+  if (angles2_about(turning.axis, sights, fit) > kClearly * angles2_about(-turning.axis, sights, fit))
+    turning.axis = -turning.axis;
 
-  double angles = 0, places = 0;
+  const double angles = angles2_about(turning.axis, sights, fit);
+  double places = 0;
   for (std::size_t k = 1; k < sights.size(); ++k) {
     const Pose<S, S> moved = sights[0].X_TS->inverse() * *sights[k].X_TS;
-    const Eigen::Matrix3d expected =
-        Eigen::AngleAxisd(-wrapped(fit.turns_rad[k] - fit.turns_rad[0]), turning.axis).toRotationMatrix();
-    const double off = Eigen::AngleAxisd(moved.rotation.transpose() * expected).angle();
-    angles += off * off / static_cast<double>(sights.size() - 1);
     places += (moved.rotation * turning.axis_point_mm + moved.translation_mm - turning.axis_point_mm)
                   .squaredNorm() /
               static_cast<double>(sights.size() - 1);
@@ -198,7 +214,7 @@ Eigen::Matrix3d between_markers(const TurnSight& sight) {
 }
 
 /// With the marker on the shaft, the axis that the second one, on the head, turns about: what its rotations
-/// in S leave fixed.
+/// in S leave fixed; its sign is by the view until fit_second().
 void fit_axis_by_second(const std::vector<TurnSight>& sights, const TurningTask& task, TurningFit& fit) {
   Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
   for (std::size_t a = 0; a < sights.size(); ++a)
@@ -212,10 +228,11 @@ void fit_axis_by_second(const std::vector<TurnSight>& sights, const TurningTask&
   if (fit.turning.axis.dot(task.view_S) < 0) fit.turning.axis = -fit.turning.axis;
 }
 
-/// Where the second marker is at turn 0: the mean of what each picture says, its turn taken off.
-Result<void> fit_second(const std::vector<TurnSight>& sights, TurningFit& fit) {
+/// Where the second marker is at turn 0: the mean of what each picture says, its turn taken off. The RMS of
+/// its turns about the pictures'.
+double place_second(const std::vector<TurnSight>& sights, const TurningFit& fit, Turning& turning) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  Turning& turning = fit.turning;
+  turning.R_SL.reset();
   for (std::size_t k = 0; k < sights.size(); ++k)
     sum += second_marker_at(turning, -fit.turns_rad[k]) *
            between_markers(sights[k]);  // no R_SL yet: the turn alone
@@ -225,7 +242,19 @@ Result<void> fit_second(const std::vector<TurnSight>& sights, TurningFit& fit) {
     const MarkedTurn told = turn_of(turning, between_markers(sights[k]));
     squares += std::pow(wrapped(told.turn_rad - fit.turns_rad[k]), 2) + std::pow(told.swing_rad, 2);
   }
-  fit.second_rms_rad = std::sqrt(squares / static_cast<double>(sights.size()));
+  return std::sqrt(squares / static_cast<double>(sights.size()));
+}
+
+/// Both markers; with the scope's own on the shaft the turns tell which way the axis goes.
+Result<void> fit_second(const std::vector<TurnSight>& sights, TurningFit& fit) {
+  fit.second_rms_rad = place_second(sights, fit, fit.turning);
+  if (fit.turning.marker == TurnMarker::shaft) {
+    Turning other = fit.turning;
+    other.axis = -other.axis;
+    const double rms_rad = place_second(sights, fit, other);
+    if (fit.second_rms_rad * fit.second_rms_rad > kClearly * rms_rad * rms_rad)
+      fit.turning = other, fit.second_rms_rad = rms_rad;
+  }
   if (fit.second_rms_rad <= kMarkerAgrees_rad) return {};
   return fail(
       json::format("the second marker turns otherwise than the picture, by %.1f degrees RMS (%.1f are "

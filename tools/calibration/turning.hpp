@@ -39,9 +39,9 @@ struct TurningTask {
   double aspect = 1;  ///< fy / fx
   double view_angle_rad = 0;
   TurnMarker marker = TurnMarker::shaft;
-  Eigen::Vector3d view_S =
-      Eigen::Vector3d::UnitZ();              ///< head: C's z axis at turn 0, in S; tells the axis's sign
-  std::optional<double> passport_notch_rad;  ///< else the first picture is at turn 0
+  Eigen::Vector3d view_S = Eigen::Vector3d::UnitZ();  ///< C's z axis at turn 0, in S: the axis's sign where
+                                                      ///< the turns tell none (half turns only)
+  std::optional<double> passport_notch_rad;           ///< else the first picture is at turn 0
 };
 
 /// Each corner goes round one centre: centre, turns and the corners' places at turn 0 by least squares. The
@@ -57,8 +57,9 @@ struct TurningCommand {
   Pattern pattern;
   std::filesystem::path
       poses;  ///< of the scope's marker on the head, or with second_poses; empty: on the shaft
-  std::filesystem::path second_poses;    ///< of a second marker; empty: there is none
-  TurnMarker marker = TurnMarker::head;  ///< with second_poses: where the scope's own marker sits
+  std::filesystem::path second_poses;  ///< of a second marker; empty: there is none
+  /// Where the scope's own marker sits; unset: on the head where there are `poses`, else on the shaft.
+  std::optional<TurnMarker> marker;
   double view_angle_rad = 0;
 };
 struct TurningCalibration {

@@ -19,15 +19,27 @@ double degrees(double rad) {
   return rad * 180 / std::numbers::pi;
 }
 
+/// Poses that are not there, and poses that nothing would be made of.
+Result<void> check_marker(const TurningCommand& command) {
+  if (!command.second_poses.empty() && command.poses.empty())
+    return fail(
+        "a second marker's poses stand alone; the scope's own marker's are needed beside them (--poses)");
+  if (command.marker == TurnMarker::head && command.poses.empty())
+    return fail("a marker on the head (--marker head) is told by its poses; --poses is wanted too");
+  if (command.marker == TurnMarker::shaft && !command.poses.empty() && command.second_poses.empty())
+    return fail(
+        "the poses of a marker on the shaft (--marker shaft) tell no turn; leave --poses out, or give a "
+        "second marker's on the head (--second-poses)");
+  return {};
+}
+
 }  // namespace
 
 Result<TurningCalibration> calibrate_turning(const TurningCommand& command, const ScopeModel& scope,
                                              const Progress& progress) {
   std::vector<Pose<T, S>> X_TS, second;
   TurningCalibration result{.scope = scope};
-  if (!command.second_poses.empty() && command.poses.empty())
-    return fail(
-        "a second marker's poses stand alone; the scope's own marker's are needed beside them (--poses)");
+  if (auto told = check_marker(command); !told) return tl::unexpected(told.error());
   for (const auto& [file, poses] :
        {std::pair{&command.poses, &X_TS}, std::pair{&command.second_poses, &second}}) {
     if (file->empty()) continue;
@@ -61,11 +73,12 @@ Result<TurningCalibration> calibrate_turning(const TurningCommand& command, cons
       sight.X_TL = Pose<T, L>{.rotation = second[i].rotation, .translation_mm = second[i].translation_mm};
     result.sights.push_back(std::move(sight));
   }
-  auto fit = fit_turning(result.sights, {.aspect = aspect,
-                                         .view_angle_rad = command.view_angle_rad,
-                                         .marker = X_TS.empty() ? TurnMarker::shaft : command.marker,
-                                         .view_S = scope.X_SC.rotation.col(2),
-                                         .passport_notch_rad = scope.notch_rad});
+  auto fit = fit_turning(
+      result.sights, {.aspect = aspect,
+                      .view_angle_rad = command.view_angle_rad,
+                      .marker = command.marker.value_or(X_TS.empty() ? TurnMarker::shaft : TurnMarker::head),
+                      .view_S = scope.X_SC.rotation.col(2),
+                      .passport_notch_rad = scope.notch_rad});
   if (!fit) return tl::unexpected(fit.error());
   result.fit = std::move(*fit);
   result.notes.insert(result.notes.end(), result.fit.notes.begin(), result.fit.notes.end());
@@ -89,6 +102,8 @@ std::string turning_text(const TurningCalibration& c) {
         c.fit.axis_rms_mm, degrees(c.fit.angle_rms_rad),
         degrees(std::acos(std::clamp(t.axis.dot(c.scope.X_SC.rotation.col(2)), -1.0, 1.0))),
         degrees(t.view_angle_rad));
+  else
+    out += "  marker on the shaft: it does not turn with the camera head\n";
   if (c.fit.notch_zero_rad)
     out += json::format("  notch at %.2f degrees at turn 0; it tells a turn to %.3f degrees RMS\n",
                         degrees(*c.fit.notch_zero_rad), degrees(c.fit.notch_rms_rad));

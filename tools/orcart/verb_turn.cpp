@@ -102,9 +102,10 @@ void add_turning(CLI::App& calibrate_verb, int& exit_code) {
   verb->add_option(
       "--second-poses", arguments->command.second_poses,
       "poses of a second marker, on the other side of the coupler: the cart follows the turn by it");
-  verb->add_option(
-          "--marker", arguments->command.marker,
-          "with --second-poses, where the scope's own marker (--poses) sits: head (default) or shaft")
+  verb->add_option_function<TurnMarker>(
+          "--marker", [arguments](const TurnMarker& marker) { arguments->command.marker = marker; },
+          "where the scope's own marker (--poses) sits: head or shaft; unless told head with --poses, "
+          "shaft without. On the shaft its poses serve beside --second-poses only")
       ->transform(one_of<TurnMarker>({{"head", TurnMarker::head}, {"shaft", TurnMarker::shaft}}));
   verb->add_option("--angle", arguments->angle_deg, "degrees between view and shaft, as engraved")
       ->check(CLI::Range(0.0, 120.0))

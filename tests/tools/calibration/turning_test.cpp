@@ -174,7 +174,7 @@ TEST_P(EveryAngle, IsSeenThroughToTwoPixelsAtTheEdgeWithAFifthOfADegreeOfAngleNo
 }
 
 INSTANTIATE_TEST_SUITE_P(Turning, EveryAngle,
-                         ::testing::Combine(::testing::Values(0.0, 30.0, 45.0, 70.0),
+                         ::testing::Combine(::testing::Values(0.0, 30.0, 45.0, 70.0, 110.0),
                                             ::testing::Values(TurnMarker::shaft, TurnMarker::head)));
 
 TEST(Turning, IsRefusedWhereItCannotBeTold) {
@@ -270,15 +270,16 @@ std::vector<TurnSight> with_second(std::vector<TurnSight> sights, const RealScop
   return sights;
 }
 
-class EveryMarker : public ::testing::TestWithParam<TurnMarker> {};
+class EveryMarker : public ::testing::TestWithParam<std::tuple<TurnMarker, double>> {};
 
 TEST_P(EveryMarker, WithASecondOneTellsTheTurnThatThePicturesTell) {
-  const RealScope real = real_scope(30, GetParam());
+  const auto [marker, view_deg] = GetParam();
+  const RealScope real = real_scope(view_deg, marker);
   const std::vector<double> turns{0, 50, 110, 170, -125, -60};
   const Eigen::Matrix3d R_SL =
       Eigen::AngleAxisd(2.2, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
   const auto sights = with_second(sights_of(real, turns, {}), real, turns, R_SL);
-  const auto fit = fit_turning(sights, task_for(real, 30));
+  const auto fit = fit_turning(sights, task_for(real, view_deg));
   ASSERT_TRUE(fit) << fit.error().message;
   ASSERT_TRUE(fit->turning.R_SL);
   EXPECT_TRUE(fit->turning.R_SL->isApprox(R_SL, 1e-6));
@@ -292,16 +293,38 @@ TEST_P(EveryMarker, WithASecondOneTellsTheTurnThatThePicturesTell) {
 }
 
 TEST_P(EveryMarker, WithASecondOneThatDoesNotTurnIsRefused) {
-  const RealScope real = real_scope(30, GetParam());
+  const auto [marker, view_deg] = GetParam();
+  const RealScope real = real_scope(view_deg, marker);
   const std::vector<double> turns{0, 50, 110, 170};
   auto sights = with_second(sights_of(real, turns, {}), real, turns, Eigen::Matrix3d::Identity());
   for (TurnSight& sight : sights) sight.X_TL->rotation = sight.X_TS->rotation;
-  const auto fit = fit_turning(sights, task_for(real, 30));
+  const auto fit = fit_turning(sights, task_for(real, view_deg));
   ASSERT_FALSE(fit);
   EXPECT_NE(fit.error().message.find("the second marker turns otherwise"), std::string::npos)
       << fit.error().message;
 }
-INSTANTIATE_TEST_SUITE_P(Turning, EveryMarker, ::testing::Values(TurnMarker::shaft, TurnMarker::head));
+INSTANTIATE_TEST_SUITE_P(Turning, EveryMarker,
+                         ::testing::Combine(::testing::Values(TurnMarker::shaft, TurnMarker::head),
+                                            ::testing::Values(30.0, 110.0)));
+
+TEST(TurningCommand, RefusesAMarkerWhosePosesAreMissingOrUseless) {
+  TurningCommand command{.marker = TurnMarker::head};
+  const auto why = [&] { return calibrate_turning(command, {}, {}).error().message; };
+  EXPECT_NE(why().find("--poses is wanted too"), std::string::npos);
+  command.marker = TurnMarker::shaft;
+  command.poses = "poses.csv";
+  EXPECT_NE(why().find("tell no turn"), std::string::npos);
+  command.poses.clear();
+  command.second_poses = "second.csv";
+  EXPECT_NE(why().find("stand alone"), std::string::npos);
+}
+
+TEST(TurningCommand, SaysWhereTheMarkerSits) {
+  TurningCalibration calibration;
+  EXPECT_NE(turning_text(calibration).find("marker on the shaft"), std::string::npos);
+  calibration.fit.turning.marker = TurnMarker::head;
+  EXPECT_NE(turning_text(calibration).find("marker on the head"), std::string::npos);
+}
 
 }  // namespace
 }  // namespace orcart
