@@ -2,6 +2,8 @@
 #include "tools/surface/vtk_surface.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -67,69 +69,164 @@ Result<ParsedSurface> parsed(vtkPolyData& data, const char* header, const std::s
   return surface;
 }
 
-std::size_t bytes_of(std::string_view type) {
-  if (type == "double" || type == "vtktypeint64" || type == "long" || type == "vtkIdType") return 8;
-  return type.ends_with("char") ? 1 : type.ends_with("short") ? 2 : 4;
+std::string lower(std::string_view word) {
+  std::string text(word);
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
 }
 
-/// Whether a file of the old format holds the points and cells that it announces, as far as a walk over its
-/// blocks tells: VTK reads beyond what is there, and crashes or makes triangles up.
-bool is_whole(std::string_view text) {
-  TextCursor cursor(text);
-  const std::string_view first = cursor.line();
-  cursor.line();
-  const bool binary = cursor.word() == "BINARY", offsets = first.find("Version 5") != std::string_view::npos;
-  std::string_view rest = text.substr(cursor.place());
-  const auto skip = [&](std::uint64_t count, std::size_t bytes) {
-    if (count > text.size()) return false;
-    if (binary) {
-      const auto end = rest.find('\n');
-      if (end == std::string_view::npos || rest.size() - end - 1 < count * bytes) return false;
-      rest.remove_prefix(end + 1 + count * bytes);
-      return true;
+std::size_t bytes_of(const std::string& type) {
+  if (type == "double" || type.ends_with("int64") || type.ends_with("long")) return 8;
+  return type.ends_with("char") ? 1 : type.ends_with("short") ? 2 : 4;  // vtkIdType is written as an int
+}
+
+/// Walks over the blocks of a file of the old format as far as they tell whether it holds the points and
+/// cells that it announces: VTK reads beyond what is there, and crashes or makes triangles up.
+class BlockWalk {
+ public:
+  explicit BlockWalk(std::string_view text) : size_(text.size()) {
+    TextCursor cursor(text);
+    offsets_ = cursor.line().find("Version 5") != std::string_view::npos;
+    cursor.line();
+    binary_ = cursor.word() == "BINARY";
+    rest_ = text.substr(cursor.place());
+  }
+
+  bool is_whole() {
+    bool points = false, cells = false;
+    for (;;) {
+      TextCursor words(rest_);
+      const std::string key = lower(words.word());
+      if (key == "dataset") {
+        words.word();
+        rest_.remove_prefix(words.place());
+      } else if (key == "metadata") {
+        skip_metadata();
+      } else if (key == "field") {
+        if (!skip_field(words)) return false;
+      } else if (key == "points") {
+        if (!skip_points(words)) return false;
+        points = true;
+      } else if (key == "vertices" || key == "lines" || key == "polygons" || key == "triangle_strips") {
+        if (!skip_cells(words)) return false;
+        cells = true;
+      } else {
+        return points && cells;  // the end, or what belongs to points and cells
+      }
     }
-    TextCursor numbers(rest);
+  }
+
+ private:
+  /// `count` numbers of so many bytes; a string's bytes are not known before.
+  bool skip(std::uint64_t count, std::size_t bytes) {
+    if (count > size_) return false;
+    if (binary_) return to_next_line() && skip_bytes(count * bytes);
+    TextCursor numbers(rest_);
     for (std::uint64_t i = 0; i < count; ++i)
       if (!numbers.number<double>()) return false;
-    rest.remove_prefix(numbers.place());
+    rest_.remove_prefix(numbers.place());
     return true;
-  };
-  for (;;) {
-    TextCursor words(rest);
-    const std::string_view key = words.word();
-    if (key == "DATASET") {
-      words.word();
-    } else if (key == "METADATA") {
-      while (!words.at_end() && !words.line().empty()) continue;
-      while (!words.at_end() && !words.line().empty()) continue;
-    } else if (key == "POINTS") {
-      const auto count = words.number<std::uint64_t>();
-      const std::size_t bytes = bytes_of(words.word());
-      rest.remove_prefix(words.place());
-      if (!count || *count > text.size() || !skip(3 * *count, bytes)) return false;
-      continue;
-    } else if (key == "VERTICES" || key == "LINES" || key == "POLYGONS" || key == "TRIANGLE_STRIPS") {
-      const auto cells = words.number<std::uint64_t>(), size = words.number<std::uint64_t>();
-      if (!cells || !size) return false;
-      rest.remove_prefix(words.place());
-      if (!offsets) {
-        if (!skip(*size, 4)) return false;
+  }
+
+  bool to_next_line() {
+    const auto end = rest_.find('\n');
+    if (end == std::string_view::npos) return false;
+    rest_.remove_prefix(end + 1);
+    return true;
+  }
+
+  bool skip_bytes(std::uint64_t count) {
+    if (rest_.size() < count) return false;
+    rest_.remove_prefix(count);
+    return true;
+  }
+
+  /// Each with its length before it, in 1, 2, 4 or 8 bytes as the first two bits say; as text a line each.
+  bool skip_strings(std::uint64_t count) {
+    if (count > size_ || !to_next_line()) return false;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      if (!binary_) {
+        if (!to_next_line()) return false;
         continue;
       }
-      for (const std::uint64_t count : {*cells, *size}) {
-        TextCursor block(rest);
-        block.word();
-        const std::size_t bytes = bytes_of(block.word());
-        rest.remove_prefix(block.place());
-        if (!skip(count, bytes)) return false;
-      }
-      continue;
-    } else {
-      return true;  // the end, or what belongs to points and cells
+      if (rest_.empty()) return false;
+      const auto first = static_cast<unsigned char>(rest_.front());
+      const std::size_t bytes = std::size_t{8} >> (first >> 6U);
+      if (rest_.size() < bytes) return false;
+      std::uint64_t length = first & 0x3FU;
+      for (std::size_t b = 1; b < bytes; ++b) length = length << 8U | static_cast<unsigned char>(rest_[b]);
+      rest_.remove_prefix(bytes);
+      if (!skip_bytes(length)) return false;
     }
-    rest.remove_prefix(words.place());
+    return true;
   }
-}
+
+  /// Up to the empty line at its end.
+  void skip_metadata() {
+    TextCursor words(rest_);
+    words.word();
+    words.line();
+    while (!words.at_end() && !words.line().empty()) continue;
+    rest_.remove_prefix(words.place());
+  }
+
+  bool skip_field(TextCursor& words) {
+    words.word();
+    const auto arrays = words.number<std::uint64_t>();
+    if (!arrays) return false;
+    rest_.remove_prefix(words.place());
+    for (std::uint64_t i = 0; i < *arrays; ++i) {
+      TextCursor head(rest_);
+      std::string_view name = head.word();
+      if (name == "METADATA") {
+        skip_metadata();
+        head = TextCursor(rest_);
+        name = head.word();
+      }
+      if (name == "NULL_ARRAY") {
+        rest_.remove_prefix(head.place());
+        continue;
+      }
+      const auto components = head.number<std::uint64_t>(), tuples = head.number<std::uint64_t>();
+      const std::string type = lower(head.word());
+      if (!components || !tuples || type.empty()) return false;
+      rest_.remove_prefix(head.place());
+      if (*components > size_ || *tuples > size_) return false;
+      const std::uint64_t values = *components * *tuples;
+      const bool bits = type == "bit" && binary_;
+      if (!(type == "string" ? skip_strings(values)
+                             : skip(bits ? (values + 7) / 8 : values, bits ? 1 : bytes_of(type))))
+        return false;
+    }
+    return true;
+  }
+
+  bool skip_points(TextCursor& words) {
+    const auto count = words.number<std::uint64_t>();
+    const std::size_t bytes = bytes_of(lower(words.word()));
+    rest_.remove_prefix(words.place());
+    return count && *count <= size_ && skip(3 * *count, bytes);
+  }
+
+  bool skip_cells(TextCursor& words) {
+    const auto cells = words.number<std::uint64_t>(), size = words.number<std::uint64_t>();
+    if (!cells || !size) return false;
+    rest_.remove_prefix(words.place());
+    if (!offsets_) return skip(*size, 4);
+    for (const std::uint64_t count : {*cells, *size}) {
+      TextCursor block(rest_);
+      block.word();
+      const std::size_t bytes = bytes_of(lower(block.word()));
+      rest_.remove_prefix(block.place());
+      if (!skip(count, bytes)) return false;
+    }
+    return true;
+  }
+
+  std::string_view rest_;
+  std::size_t size_;
+  bool binary_ = false, offsets_ = false;
+};
 
 }  // namespace
 
@@ -154,7 +251,7 @@ Result<Surface> read_vtk_surface(const std::filesystem::path& file, SurfaceNotes
     if (reader->IsFilePolyData() == 0) return tl::unexpected(surface.error());
     const auto bytes = read_whole_file(file, kLargestFileBytes);
     if (!bytes) return tl::unexpected(bytes.error());
-    const bool whole = is_whole({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+    const bool whole = BlockWalk({reinterpret_cast<const char*>(bytes->data()), bytes->size()}).is_whole();
     if (whole) reader->Update();
     if (!whole || reader->GetErrorCode() != 0)
       return fail(name + ": is damaged or cut short; a whole file is expected");
