@@ -26,8 +26,20 @@ StepReport TrackerStage::step(Instant now) noexcept {
   return {.worked = report.worked, .items = report.new_reply ? 1u : 0u};
 }
 
+/// The fit begins anew where the counter runs at another rate than it was laid for.
+void TrackerStage::count(std::uint32_t device_frame, Instant arrived_at) noexcept {
+  const double assumed_hz = driver_.counter_hz();
+  const bool other_device = assumed_hz != assumed_hz_;
+  if (other_device) counter_ = CounterRate(assumed_hz);
+  assumed_hz_ = assumed_hz;
+  if (!counter_.observe(device_frame, arrived_at) && !other_device) return;
+  fit_settings_.rate_hz = counter_.hz();
+  fit_ = ClockFit(fit_settings_);
+}
+
 PoseSample TrackerStage::sample_of(const TrackerReply& reply) noexcept {
   // A reply with a missing tool is shorter and so comes sooner: what the line takes is taken off each.
+  count(reply.device_frame, reply.arrived_at - reply.wire_time);
   (void)fit_.observe(reply.device_frame, reply.arrived_at - reply.wire_time);
   const ToolReading &scope = reply.tools[0], &reference = reply.tools[1];
   PoseSample sample{.measured_at = fit_.host_time(reply.device_frame),

@@ -8,6 +8,7 @@
 #include "firmware-host/tracker/ndi_driver.hpp"
 #include "realtime/kernel/stage.hpp"
 #include "realtime/sync/clock_fit.hpp"
+#include "realtime/sync/counter_rate.hpp"
 
 namespace orcart {
 
@@ -15,8 +16,9 @@ namespace orcart {
 /// second marker.
 class TrackerStage final : public Stage {
  public:
+  /// The fit's rate is the device's to tell: what the driver thinks of it, then what its replies say.
   TrackerStage(NdiDriver& driver, const ClockFitSettings& clock_fit, Lanes& lanes)
-      : driver_(driver), fit_(clock_fit), lanes_(lanes) {}
+      : driver_(driver), fit_settings_(clock_fit), fit_(clock_fit), lanes_(lanes) {}
 
   std::string_view name() const noexcept override { return "tracker"; }
   StepReport step(Instant now) noexcept override;
@@ -25,9 +27,13 @@ class TrackerStage final : public Stage {
 
  private:
   PoseSample sample_of(const TrackerReply& reply) noexcept;
+  void count(std::uint32_t device_frame, Instant arrived_at) noexcept;
 
   NdiDriver& driver_;
+  ClockFitSettings fit_settings_;
   ClockFit fit_;
+  double assumed_hz_ = fit_settings_.rate_hz;
+  CounterRate counter_{fit_settings_.rate_hz};
   Lanes& lanes_;
   TrackerNews news_;
 };

@@ -30,7 +30,8 @@ class LinkHealth {
 
   bool suspect(Instant now) const noexcept { return now - last_good_ >= suspect_after_; }
   bool silent(Instant now) const noexcept { return now - last_good_ >= lost_after_; }
-  /// Good replies have come for three periods and all told the same frame.
+  /// Good replies have come for three periods of the device and all told the same frame. The period is the
+  /// wished one, or what four frames took where they came slower.
   bool frame_stuck() const noexcept { return frame_stuck_; }
   /// 3 damaged replies in a row, or 1 % of what was to come in 10 s.
   bool line_is_bad(Instant now) const noexcept;
@@ -38,6 +39,9 @@ class LinkHealth {
   Instant next_verdict(Instant now) const noexcept;
 
  private:
+  void time_frames(Instant now) noexcept;
+  Nanos frame_patience() const noexcept;
+
   static constexpr std::size_t kWindowSeconds = 10;
   struct Second {
     std::int64_t index = -1;
@@ -47,13 +51,16 @@ class LinkHealth {
 
   Nanos suspect_after_;
   Nanos lost_after_;
-  Nanos stuck_after_;  ///< 2.5 periods: replies come once a period, so the third repeat counts whatever its
-                       ///< jitter
+  Nanos stuck_after_;  ///< 2.5 wished periods: replies come once a period, so the third repeat counts
+                       ///< whatever its jitter
   std::uint32_t tolerated_;  ///< damaged replies in the window below which the line is good
   Instant last_good_{};
   Instant frame_changed_at_{};
   std::uint32_t frame_ = 0;
   bool frame_seen_ = false;
+  Nanos frames_came_each_{};  ///< mean of the newest four; 0 until so many have come
+  Instant four_began_{};
+  int of_four_ = 0;
   bool frame_stuck_ = false;
   std::uint32_t damaged_in_a_row_ = 0;
   std::array<Second, kWindowSeconds> window_{};

@@ -390,6 +390,11 @@ void NdiDriver::take_port_list(std::string_view text) noexcept {
   }
 }
 
+double NdiDriver::counter_hz() const noexcept {
+  constexpr double kPolaris_hz = 60;
+  return start_.counts_at_60_hz() ? kPolaris_hz : settings_.device_rate_hz;
+}
+
 std::string_view NdiDriver::disabled_reason(int tool) const noexcept {
   return ndi::disabled_reason(port_status_[static_cast<std::size_t>(tool)]);
 }

@@ -61,6 +61,10 @@ class NdiDriver {
   std::uint32_t baud() const noexcept { return start_.baud(); }
   std::string_view firmware() const noexcept { return start_.firmware(); }
   std::string_view api_revision() const noexcept { return start_.api_revision(); }
+  /// At what rate the device is thought to count its frames, whatever it measures at; once it has been
+  /// started.
+  double counter_hz() const noexcept;
+  double wished_rate_hz() const noexcept { return settings_.device_rate_hz; }
   /// How poses are asked for now; never automatic while polling.
   PollForm poll_form() const noexcept { return form_; }
   /// All that the device has told of itself since it was started; the bump detector among it.

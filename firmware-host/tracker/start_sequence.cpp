@@ -35,6 +35,10 @@ bool StartSequence::knows_frames() const noexcept {
   return revision.size() >= 5 && revision[0] == 'G' && revision.substr(2, 3) >= "003";
 }
 
+bool StartSequence::counts_at_60_hz() const noexcept {
+  return !knows_frames() && (api_revision().starts_with("G") || firmware().starts_with("POLARIS"));
+}
+
 void StartSequence::begin() noexcept {
   tool_ = block_ = old_count_ = old_next_ = 0;
   wired_count_ = wired_next_ = 0;

@@ -74,6 +74,8 @@ class StartSequence {
   std::string_view firmware() const noexcept { return firmware_.view(); }
   /// Vega, Lyra: API family G from revision 003 on.
   bool knows_frames() const noexcept;
+  /// Polaris, Vicra, Spectra: their frame number runs at 60 Hz whatever they measure at.
+  bool counts_at_60_hz() const noexcept;
 
  private:
   enum class Step : std::uint8_t {

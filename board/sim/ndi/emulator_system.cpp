@@ -144,6 +144,7 @@ NdiError NdiEmulator::on_beep(std::string_view arguments, const Moment& moment) 
 }
 
 NdiError NdiEmulator::on_irate(std::string_view arguments, const Moment&) noexcept {
+  if (settings_.measures_each != 0) return NdiError::invalid_command;
   if (arguments.size() != 1 || !within(arguments[0], '2')) return NdiError::out_of_range;
   if (model_.has_frames) parameters_.assign("Param.Tracking.Track Frequency", arguments[0] - '0');
   parameters_.assign("Param.Tracking.Illuminator Rate", arguments[0] - '0');

@@ -69,7 +69,10 @@ NdiEmulator::Moment NdiEmulator::moment_at(Instant now) const noexcept {
   const auto* frozen = faults_.active(NdiFault::frozen_frame, now, replies_sent_);
   const Instant seen_at = (frozen != nullptr ? frozen->from : now) - settings_.device_latency;
   const std::uint32_t frame = clock_.newest_at(seen_at);
-  const auto each = static_cast<std::uint32_t>(3 - parameters_.value("Param.Tracking.Track Frequency"));
+  const std::string_view share =
+      model_.has_frames ? "Param.Tracking.Track Frequency" : "Param.Tracking.Illuminator Rate";
+  const std::uint32_t told = static_cast<std::uint32_t>(3 - parameters_.value(share));
+  const std::uint32_t each = settings_.measures_each != 0 ? settings_.measures_each : told;
   return {.now = now, .frame = frame - frame % each};  // one in `each` is reported; all are numbered
 }
 

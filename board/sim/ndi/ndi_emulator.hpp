@@ -25,6 +25,8 @@ namespace orcart {
 struct NdiEmulatorSettings {
   NdiModel model = NdiModel::vega;
   double frame_rate_hz = 60;
+  std::uint32_t measures_each =
+      0;                          ///< of so many frames it measures one, and refuses IRATE; 0: as it is told
   double clock_drift_ppm = 0;     ///< of the device's clock against the host's
   Nanos frame_phase = 3ms;        ///< first frame after switching on
   Nanos device_latency = 4ms;     ///< from a frame's measurement to the first reply that can carry it
