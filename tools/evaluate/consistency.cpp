@@ -47,8 +47,9 @@ std::optional<Eigen::Vector2d> seen_at(const ScopeModel& scope, const Pose<M, C>
   const Eigen::Vector3d p_C = X_MC.rotation.transpose() * (place_mm - X_MC.translation_mm);
   const auto pixel = project(scope.lens, p_C);
   const CircularMask& mask = scope.mask;
-  if (!pixel ||
-      (*pixel - Eigen::Vector2d(mask.cx_px, mask.cy_px)).norm() > mask.radius_px - mask.soft_edge_px)
+  const double aspect = scope.lens.fy_px / scope.lens.fx_px;
+  if (!pixel || std::hypot(pixel->x() - mask.cx_px, (pixel->y() - mask.cy_px) / aspect) >
+                    mask.radius_px - mask.soft_edge_px)
     return std::nullopt;
   return pixel;
 }

@@ -73,6 +73,20 @@ TEST(Consistency, AShiftThatBothShareIsNotSeen) {
   EXPECT_LT(pair.median_mm, 0.1);
 }
 
+TEST(Consistency, TheCircleOfAnamorphicPixelsIsAnEllipse) {
+  // The same optics and views: which patches are seen whole does not depend on the pixels' shape.
+  const auto looked_at = [](double aspect) {
+    BallScene ball;
+    ball.scope.lens.fy_px = aspect * ball.scope.lens.fx_px;
+    TakenPicture even{.picture = {.width_px = 640, .height_px = 480, .rgba = {}}, .X_MC = near_the_wall(0)};
+    even.picture.rgba.assign(640UL * 480 * 4, 128);
+    RandomStream random(1, 1);
+    return compare(ball.scene(), even, even, {.patches = 300}, random).looked_at;
+  };
+  EXPECT_GT(looked_at(1), 50U);
+  EXPECT_EQ(looked_at(0.9), looked_at(1));
+}
+
 TEST(Consistency, AnEvenPictureTellsNothing) {
   const BallScene ball;
   TakenPicture even{.picture = {.width_px = 640, .height_px = 480, .rgba = {}}, .X_MC = near_the_wall(0)};
