@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -121,6 +122,36 @@ Result<Surface> read_surface_of(const Arguments& arguments) {
   return surface;
 }
 
+std::filesystem::path whole_path(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto path = std::filesystem::weakly_canonical(file, error);
+  return error ? file : path;
+}
+
+/// Refuses names of which two files would be written, or that something stands under which is read. The
+/// surface may be painted over: it stays the same surface.
+Result<void> check_names(const Arguments& arguments, const std::vector<View>& views) {
+  const auto painting = textured_files(arguments.out);
+  std::vector<std::filesystem::path> difference;
+  if (arguments.difference.ends_with(".png"))
+    difference = {arguments.difference};
+  else if (!arguments.difference.empty())
+    difference = textured_files(arguments.difference);
+  std::set<std::filesystem::path> written, read = {whole_path(arguments.scope), whole_path(arguments.views)};
+  for (const View& view : views) read.insert(whole_path(view.image));
+  for (const auto& file : painting) written.insert(whole_path(file));
+  for (const auto& file : difference)
+    if (written.contains(whole_path(file)))
+      return fail(file.string() +
+                  ": would hold the painting and the difference; a --difference whose name differs from "
+                  "--out's before its ending is expected");
+  for (const auto& file : difference) written.insert(whole_path(file));
+  for (const auto& file : written)
+    if (read.contains(file))
+      return fail(file.string() + ": is read, and would be written over; another name is expected");
+  return {};
+}
+
 Result<Inputs> read_inputs(const Arguments& arguments) {
   auto surface = read_surface_of(arguments);
   if (!surface) return tl::unexpected(surface.error());
@@ -134,6 +165,7 @@ Result<Inputs> read_inputs(const Arguments& arguments) {
   auto views = read_views(arguments.views);
   if (!views) return tl::unexpected(views.error());
   warn(views->notes);
+  if (auto names = check_names(arguments, views->views); !names) return tl::unexpected(names.error());
   if (auto turns = check_turns(views->views, *scope, arguments.views); !turns)
     return tl::unexpected(turns.error());
   return Inputs{std::move(*surface), std::move(*scope), std::move(views->views)};

@@ -103,6 +103,17 @@ std::vector<Corner> corners_of(const std::filesystem::path& obj, const Picture& 
   return corners;
 }
 
+TEST_F(Paint, RefusesNamesThatWouldWriteOverEachOtherOrOverAPicture) {
+  for (const char* name : {"painted.png", "painted.ply", "painted.obj", "./painted.png"})
+    expect_refused("would hold the painting and the difference", {"--difference", path(name)});
+  const Said over_picture = run("ramp.obj");
+  EXPECT_NE(over_picture.exit_code, 0);
+  EXPECT_NE(over_picture.err.find("ramp.png: is read, and would be written over"), std::string::npos)
+      << over_picture.err;
+  expect_refused("ramp.png: is read", {"--difference", path("ramp.png")});
+  EXPECT_EQ(folder_.count(), files_);
+}
+
 TEST_F(Paint, PutsEachPixelWhereAViewerWillLookForIt) {
   const Said said = run("painted.obj");
   ASSERT_EQ(said.exit_code, 0) << said.err;
