@@ -33,12 +33,6 @@ struct ConeShape {
 
 ViewingCone viewing_cone(const Pose<M, C>& X_MC, const ConeShape& shape) noexcept;
 
-/// How deep a point of C lies in the endless cone, mm across the axis: positive inside, z tan(half angle) -
-/// rho.
-inline float depth_in_cone_mm(const ViewingCone& cone, const Eigen::Vector3f& p_C_mm) noexcept {
-  return cone.tangent * p_C_mm.z() - p_C_mm.head<2>().norm();
-}
-
 /// Whether a triangle (corners in C, mm) and the cone share a point. Exact up to rounding, also for triangles
 /// without area. A triangle meets the convex cone where a corner lies inside, an edge crosses it, or the axis
 /// pierces the triangle: a plane section that meets no edge is an ellipse about the axis. The far plane cuts

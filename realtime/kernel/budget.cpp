@@ -1,15 +1,9 @@
 // Keeps a stage's ledger and judges it at the quantile its samples support.
 #include "realtime/kernel/budget.hpp"
 
+#include "realtime/kernel/one_writer.hpp"
+
 namespace orcart {
-namespace {
-
-// One writer: load and store need not be one step. Relaxed, without a partner: a count alone.
-void add(std::atomic<std::uint64_t>& to, std::uint64_t what) noexcept {
-  to.store(to.load(std::memory_order_relaxed) + what, std::memory_order_relaxed);
-}
-
-}  // namespace
 
 BudgetVerdict judge(const Budget& budget, const HistogramSnapshot& wall) noexcept {
   BudgetVerdict verdict{.within_bound = wall.max() <= budget.bound,
@@ -25,11 +19,11 @@ void StageLedger::record(const StepTiming& timing, const StepReport& report) noe
   if (!report.worked) return;
   wall_.record(timing.wall);
   cpu_.record(timing.cpu);
-  add(items_, report.items);
-  if (report.carried) add(carried_, 1);
-  if (timing.wall > budget_.p999) add(over_p999_, 1);
+  add_alone(items_, report.items);
+  if (report.carried) add_alone(carried_, 1);
+  if (timing.wall > budget_.p999) add_alone(over_p999_, 1);
   if (timing.wall <= budget_.bound) return;
-  add(over_bound_, 1);
+  add_alone(over_bound_, 1);
   last_miss_ns_.store(nanos_since_zero(timing.at), std::memory_order_relaxed);  // read alone, no partner
 }
 

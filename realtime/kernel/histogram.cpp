@@ -5,16 +5,9 @@
 #include <bit>
 #include <cmath>
 
+#include "realtime/kernel/one_writer.hpp"
+
 namespace orcart {
-namespace {
-
-// One writer: load and store need not be one step.
-template <class Number>
-void add(std::atomic<Number>& to, Number what) noexcept {
-  to.store(to.load(std::memory_order_relaxed) + what, std::memory_order_relaxed);
-}
-
-}  // namespace
 
 bool supports(double quantile, std::uint64_t samples) noexcept {
   // The slack is for quantiles that are not representable: 1 - 0.9 is a little under 0.1.
@@ -47,9 +40,9 @@ Nanos histogram_buckets::upper_edge(std::size_t index) noexcept {
 
 void Histogram::record(Nanos length) noexcept {
   const std::int64_t ns = std::max<std::int64_t>(0, length.count());
-  add(buckets_[histogram_buckets::index_of(length)], std::uint64_t{1});
-  add(count_, std::uint64_t{1});
-  add(total_ns_, ns);
+  add_alone(buckets_[histogram_buckets::index_of(length)], 1);
+  add_alone(count_, 1);
+  add_alone(total_ns_, ns);
   if (ns > max_ns_.load(std::memory_order_relaxed)) max_ns_.store(ns, std::memory_order_relaxed);
 }
 

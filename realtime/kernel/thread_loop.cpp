@@ -3,15 +3,9 @@
 
 #include <algorithm>
 
+#include "realtime/kernel/one_writer.hpp"
+
 namespace orcart {
-namespace {
-
-// One writer: load and store need not be one step. Relaxed, without a partner: a count alone.
-void add(std::atomic<std::uint64_t>& to, std::uint64_t what) noexcept {
-  to.store(to.load(std::memory_order_relaxed) + what, std::memory_order_relaxed);
-}
-
-}  // namespace
 
 void ThreadLoop::begin(Instant first) noexcept {
   if (plan_.spec.rate_hz > 0) pacer_.emplace(period_of(plan_.spec.rate_hz), plan_.spec.overrun, first);
@@ -24,7 +18,7 @@ Instant ThreadLoop::wake_by(Instant now) const noexcept {
 
 void ThreadLoop::woke(Instant now, Instant due) noexcept {
   on_period_ = pacer_ && now >= pacer_->due();
-  add(ledger_.turns, 1);
+  add_alone(ledger_.turns, 1);
   if (now >= due) ledger_.lateness.record(now - due);
   trace({.at = now, .kind = TraceKind::wake, .value = (now - due).count()});
 }
@@ -44,8 +38,8 @@ void ThreadLoop::turn_over(Instant now) noexcept {
   const std::uint64_t slips_before = pacer_->slips();
   const std::uint64_t skipped = pacer_->turn_over(now);
   if (pacer_->slips() == slips_before) return;
-  add(ledger_.slips, 1);
-  add(ledger_.skipped, skipped);
+  add_alone(ledger_.slips, 1);
+  add_alone(ledger_.skipped, skipped);
   trace({.at = now, .kind = TraceKind::slip, .value = static_cast<std::int64_t>(skipped)});
 }
 

@@ -68,21 +68,22 @@ bool is_software(const std::string& renderer) {
 }  // namespace
 
 Result<GlContext> GlContext::create(const NativeDisplay& native) {
-  if (native.gbm_device != nullptr) return on_display(display_of(EGL_PLATFORM_GBM_MESA, native.gbm_device));
+  if (native.gbm_device != nullptr)
+    return on_display(display_of(EGL_PLATFORM_GBM_MESA, native.gbm_device), "on the panel's card by GBM");
   std::array<EGLDeviceEXT, 16> room{};
   for (EGLDeviceEXT gpu : gpus(room)) {
-    auto context = on_display(display_of(EGL_PLATFORM_DEVICE_EXT, gpu));
+    auto context = on_display(display_of(EGL_PLATFORM_DEVICE_EXT, gpu), "on a GPU that it lists");
     if (context && context->render_class() == RenderClass::gpu) return context;
   }
-  return on_display(display_of(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY));
+  return on_display(display_of(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY),
+                    "without a window system (EGL_MESA_platform_surfaceless)");
 }
 
-Result<GlContext> GlContext::on_display(void* display) {
+Result<GlContext> GlContext::on_display(void* display, const char* where) {
   auto state = std::make_unique<State>();
   EGLint major = 0, minor = 0;
   if (display == EGL_NO_DISPLAY || eglInitialize(display, &major, &minor) == EGL_FALSE) {
-    return fail(std::string("EGL cannot be opened without a window system (EGL_MESA_platform_surfaceless)") +
-                kRemedy);
+    return fail(std::string("EGL cannot be opened ") + where + kRemedy);
   }
   state->display = display;
   eglBindAPI(EGL_OPENGL_ES_API);

@@ -35,7 +35,7 @@ class GlContext {
 
  private:
   struct State;
-  static Result<GlContext> on_display(void* display);
+  static Result<GlContext> on_display(void* display, const char* where);
   std::unique_ptr<State> state_;
   explicit GlContext(std::unique_ptr<State> state);
 };

@@ -87,11 +87,8 @@ void HudCanvas::text_centred(HudPoint at, TextStyle style, Colour colour, std::s
 
 // Clearing costs a software driver a tenth of drawing.
 void HudCanvas::ground(const HudBox& box, Colour colour) noexcept {
-  const float y = settings_.rows == RowOrder::top_first
-                      ? box.y
-                      : static_cast<float>(settings_.height_px) - box.y - box.height;
   glEnable(GL_SCISSOR_TEST);
-  glScissor(static_cast<GLint>(box.x), static_cast<GLint>(y), static_cast<GLsizei>(std::ceil(box.width)),
+  glScissor(static_cast<GLint>(box.x), static_cast<GLint>(box.y), static_cast<GLsizei>(std::ceil(box.width)),
             static_cast<GLsizei>(std::ceil(box.height)));
   glClearColor(static_cast<float>(colour.r) / 255, static_cast<float>(colour.g) / 255,
                static_cast<float>(colour.b) / 255, 1);
@@ -156,7 +153,6 @@ void HudCanvas::flush() noexcept {
   glUseProgram(program_.id());
   glUniform2f(gles::uniform(program_, "u_panel_size"), static_cast<float>(settings_.width_px),
               static_cast<float>(settings_.height_px));
-  glUniform1f(gles::uniform(program_, "u_row_sign"), settings_.rows == RowOrder::top_first ? 1.0F : -1.0F);
   glUniform1i(gles::uniform(program_, "u_letters"), 0);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, letters_.id());

@@ -24,13 +24,8 @@ struct HudBox {
   float x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Whether row 0 of the framebuffer shows the panel's top (a picture for reading back) or its bottom (a GL
-/// window).
-enum class RowOrder : std::uint8_t { top_first, bottom_first };
-
 struct HudCanvasSettings {
   int width_px = 1280, height_px = 800;
-  RowOrder rows = RowOrder::top_first;
 };
 
 /// All calls from the thread whose GL context is current. Nothing is allocated after create(); what does not

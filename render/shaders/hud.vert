@@ -5,7 +5,6 @@ layout(location = 2) in vec4 a_colour;
 layout(location = 3) in vec4 a_shape;   // kind, radius or half width, width of the outline or length of a dash
 
 uniform vec2 u_panel_size;
-uniform float u_row_sign;  // +1: row 0 of the target is the panel's top
 flat out vec4 v_rect, v_detail, v_colour, v_shape;
 out vec2 v_at;
 
@@ -23,5 +22,5 @@ void main() {
            vec2(-along.y, along.x) * reach * (2.0 * corner.y - 1.0);
   }
   vec2 clip = v_at / u_panel_size * 2.0 - 1.0;
-  gl_Position = vec4(clip.x, clip.y * u_row_sign, 0.0, 1.0);
+  gl_Position = vec4(clip, 0.0, 1.0);
 }

@@ -139,8 +139,7 @@ Result<Screen> Screen::create(const Surface& surface, const AtlasLayout& layout,
                                    .draw_by = settings.draw_by});
   if (!view) return tl::unexpected(view.error());
   state->view = std::move(*view);
-  auto canvas = HudCanvas::create(
-      {.width_px = settings.width_px, .height_px = settings.height_px, .rows = RowOrder::top_first});
+  auto canvas = HudCanvas::create({.width_px = settings.width_px, .height_px = settings.height_px});
   if (!canvas) return tl::unexpected(canvas.error());
   state->canvas = std::move(*canvas);
   state->stale_view = state->whole_view();

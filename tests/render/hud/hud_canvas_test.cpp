@@ -17,8 +17,8 @@ class HudCanvasTest : public ::testing::Test {
  protected:
   static constexpr int kWidth = 320, kHeight = 200;
   HudCanvasTest() { target_.clear(0, 0, 0); }
-  HudCanvas canvas(RowOrder rows = RowOrder::top_first) {
-    auto made = HudCanvas::create({.width_px = kWidth, .height_px = kHeight, .rows = rows});
+  HudCanvas canvas() {
+    auto made = HudCanvas::create({.width_px = kWidth, .height_px = kHeight});
     EXPECT_TRUE(made.has_value()) << made.error().message;
     return std::move(*made);
   }
@@ -80,15 +80,6 @@ TEST_F(HudCanvasTest, DrawsAStrokeAlongItsTwoEndsAndBreaksADashedOne) {
   EXPECT_GT(p.at(25, 150)[0], 200);
   EXPECT_EQ(p.at(35, 150)[0], 0);
   EXPECT_GT(p.at(45, 150)[0], 200);
-}
-
-TEST_F(HudCanvasTest, TurnsTheRowsForAWindow) {
-  HudCanvas c = canvas(RowOrder::bottom_first);
-  c.box({0, 0, 320, 10}, 0, kRed);
-  c.flush();
-  const Pixels p = target_.read();
-  EXPECT_EQ(ink(p, 0, kHeight - 10, kWidth, kHeight), 3200);
-  EXPECT_EQ(ink(p, 0, 0, kWidth, kHeight - 10), 0);
 }
 
 TEST_F(HudCanvasTest, LeavesOutWhatDoesNotFitAnyMoreAndStartsAfreshAfterwards) {
