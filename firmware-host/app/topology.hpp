@@ -69,9 +69,10 @@ inline constexpr std::size_t kEncoderQueueDepth = 256;  ///< encoder -> sync: tw
 inline constexpr std::uint32_t kFrameBuffers =
     10;  ///< 4 waiting for a pose, 2 queued, 2 painted, 1 shown, 1 filling
 inline constexpr std::size_t kFrameQueueDepth = 2 * kFrameBuffers;  ///< camera -> sync: cannot overflow
-inline constexpr std::size_t kPaintQueueDepth =
-    4 * kFrameBuffers;                           ///< mapping -> painter: two orders a frame
-inline constexpr std::size_t kPatchSlots = 4;    ///< mapper -> painter and back
+inline constexpr std::size_t kPatchSlots = 4;                       ///< mapper -> painter and back
+/// mapping -> painter: two orders for each buffer a driver may give, a patch each, and the pedal's; cannot
+/// overflow, which would lose a buffer for good.
+inline constexpr std::size_t kPaintQueueDepth = 2 * kFrameQueueDepth + kPatchSlots + kPedalQueueDepth;
 inline constexpr std::size_t kSessionSlots = 8;  ///< painter -> session
 
 constexpr const StageRow& row_of(StageId id) {

@@ -61,7 +61,7 @@ TEST(PathBudget, ATurnThatEndsExactlyWhenTheNextIsDueIsInTime) {
 
 TEST(Topology, QueuesThatMustNotOverflowAreDeepEnough) {
   EXPECT_GE(kFrameQueueDepth, kFrameBuffers);
-  EXPECT_GE(kPaintQueueDepth, 2 * kFrameBuffers + kPedalQueueDepth / 8);
+  EXPECT_GE(kPaintQueueDepth, 2 * kFrameQueueDepth + kPatchSlots + kPedalQueueDepth);
 }
 
 }  // namespace
