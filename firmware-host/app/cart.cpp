@@ -181,6 +181,9 @@ Cart::Now Cart::now() const {
   now.pedal = s.pedal->fault();
   now.panel = s.showing->fault();
   now.mismatch_deg = s.sync->mismatch_deg();
+  const TrackerState tracker = s.tracker->state();
+  if (tracker.trouble != TrackerTrouble::none) now.tracker = s.driver->trouble_sentence(tracker);
+  now.tracker_remark = s.driver->remark(tracker);
   if (s.encoder) now.encoder = s.encoder->fault();
   if (s.setup.session != nullptr) {
     now.session_lost = s.setup.session->lost();

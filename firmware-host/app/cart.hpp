@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "board/ports/byte_link.hpp"
@@ -101,6 +102,8 @@ class Cart {
     int mismatch_deg = 0;            ///< SyncStage::mismatch_deg()
     std::uint64_t session_lost = 0;  ///< captures that are not in the session
     bool session_failing = false;    ///< its newest write failed
+    /// NdiDriver::trouble_sentence(), empty where there is none; and its remark().
+    std::string tracker, tracker_remark;
   };
   Now now() const;
 

@@ -13,6 +13,19 @@ std::string sentence_for(PortFault fault) {
 
 }  // namespace
 
+std::string DeviceLog::tracker_news(const Cart::Now& now) {
+  std::string lines;
+  if (now.tracker != tracker_)
+    lines +=
+        "tracker: " + (now.tracker.empty() ? "works again" : now.tracker + "; tried again until it works") +
+        "\n";
+  if (now.tracker_remark != tracker_remark_ && !now.tracker_remark.empty())
+    lines += "tracker: " + now.tracker_remark + "\n";
+  tracker_ = now.tracker;
+  tracker_remark_ = now.tracker_remark;
+  return lines;
+}
+
 std::string DeviceLog::news(const Cart::Now& now) {
   struct Watched {
     std::string_view name;
@@ -33,7 +46,7 @@ std::string DeviceLog::news(const Cart::Now& now) {
                        " degrees further round; nothing is painted until they agree\n"
                  : std::string("turn: agrees with the notch again\n");
   mismatch_deg_ = now.mismatch_deg;
-  return lines + session_news(now);
+  return lines + tracker_news(now) + session_news(now);
 }
 
 // Of a disk that is too slow the first loss alone: the run's end tells how many there were.

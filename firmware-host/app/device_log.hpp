@@ -15,8 +15,10 @@ class DeviceLog {
 
  private:
   std::string session_news(const Cart::Now& now);
+  std::string tracker_news(const Cart::Now& now);
 
   int mismatch_deg_ = 0;
+  std::string tracker_, tracker_remark_;
   bool session_failing_ = false, told_loss_ = false;
   std::array<PortFault, 4> known_{PortFault::nothing_yet, PortFault::nothing_yet, PortFault::nothing_yet,
                                   PortFault::nothing_yet};

@@ -22,12 +22,11 @@ namespace orcart {
 struct TrackerNews {
   Instant last_reply{};
   Instant last_complete{};  ///< newest sample in which scope and reference were both seen
-  bool running = false;
+  bool refuses = false;     ///< it answers, but will not do as it is told
   ToolState scope = ToolState::unseen;
   ToolState reference = ToolState::unseen;
-  ToolState second = ToolState::unseen;  ///< a turning scope's second marker
-  Instant bumped_at{};                   ///< when the sensor was last knocked; zero where never
-  bool infrared = false;                 ///< too much light of other sources
+  Instant bumped_at{};    ///< when the sensor was last knocked; zero where never
+  bool infrared = false;  ///< too much light of other sources
 };
 
 /// The camera as its stage sees it, for the panel.

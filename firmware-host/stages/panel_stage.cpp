@@ -234,7 +234,9 @@ void PanelStage::choose_notice(Instant now) noexcept {
   screen_state_.status.notice.level = Notice::Level::none;
   if (status.video == Freshness::lost)
     return notice(Notice::Level::alarm, "NO LIVE VIDEO: check the camera's cable");
-  if (status.tracker == Freshness::lost) return notice(Notice::Level::alarm, "TRACKER LOST: check its cable");
+  if (status.tracker == Freshness::lost)
+    return notice(Notice::Level::alarm,
+                  tracker_.refuses ? "TRACKER REFUSES: see the log" : "TRACKER LOST: check its cable");
   if (status.painting_blocked) return notice(Notice::Level::warning, settings_.painting_blocked);
   if (camera_.stamps_wrong) return notice(Notice::Level::warning, "CAMERA STAMPS WRONG: see [camera] stamp");
   if (tracker_.infrared)

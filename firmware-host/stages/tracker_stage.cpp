@@ -7,7 +7,8 @@ namespace orcart {
 
 StepReport TrackerStage::step(Instant now) noexcept {
   const DriverReport report = driver_.step(now);
-  news_.running = report.health == TrackerHealth::live || report.health == TrackerHealth::suspect;
+  news_.refuses = refuses(report.trouble);
+  state_.store(driver_.state(), std::memory_order_relaxed);
   if (driver_.bumped()) {
     news_.bumped_at = now;
     driver_.forget_alerts();
@@ -19,7 +20,6 @@ StepReport TrackerStage::step(Instant now) noexcept {
     news_.last_reply = sample.arrived_at;
     news_.scope = sample.scope;
     news_.reference = sample.reference;
-    news_.second = sample.second;
     if (sample.complete()) news_.last_complete = sample.arrived_at;
   }
   lanes_.tracker_news.post(news_);

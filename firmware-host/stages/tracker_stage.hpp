@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 
 #include "firmware-host/stages/lanes.hpp"
 #include "firmware-host/tracker/ndi_driver.hpp"
@@ -23,6 +24,9 @@ class TrackerStage final : public Stage {
   std::string_view name() const noexcept override { return "tracker"; }
   StepReport step(Instant now) noexcept override;
 
+  /// What the driver has to tell. Any thread.
+  TrackerState state() const noexcept { return state_.load(std::memory_order_relaxed); }
+
   const ClockFit& clock_fit() const noexcept { return fit_; }
 
  private:
@@ -36,6 +40,8 @@ class TrackerStage final : public Stage {
   CounterRate counter_{fit_settings_.rate_hz};
   Lanes& lanes_;
   TrackerNews news_;
+  std::atomic<TrackerState> state_{TrackerState{}};  ///< relaxed, without a partner: it stands for itself
+  static_assert(std::atomic<TrackerState>::is_always_lock_free);
 };
 
 /// What the tracker's thread sleeps on: the line, and what the driver has planned.

@@ -31,6 +31,7 @@ void LinkHealth::begin(Instant now) noexcept {
   frame_ = 0;
   frame_seen_ = frame_stuck_ = false;
   frames_came_each_ = {};
+  frame_rate_hz_ = 0;
   damaged_in_a_row_ = 0;
 }
 
@@ -50,10 +51,23 @@ void LinkHealth::on_damaged_reply(Instant now) noexcept {
 /// Four are enough for a mean, and have come 0.1 s after the first at 60 Hz.
 void LinkHealth::time_frames(Instant now) noexcept {
   constexpr int kFrames = 4;
-  if (frame_seen_ && ++of_four_ < kFrames) return;
-  if (frame_seen_) frames_came_each_ = (now - four_began_) / kFrames;
-  of_four_ = 0;
-  four_began_ = now;
+  constexpr Nanos kCounted = 3s;
+  if (!frame_seen_) {
+    four_began_ = count_began_ = now;
+    of_four_ = counted_ = 0;
+    return;
+  }
+  if (++of_four_ == kFrames) {
+    frames_came_each_ = (now - four_began_) / kFrames;
+    four_began_ = now;
+    of_four_ = 0;
+  }
+  ++counted_;
+  if (now - count_began_ >= kCounted) {
+    frame_rate_hz_ = counted_ / seconds(now - count_began_);
+    count_began_ = now;
+    counted_ = 0;
+  }
 }
 
 Nanos LinkHealth::frame_patience() const noexcept {

@@ -28,6 +28,9 @@ class LinkHealth {
   /// The newest device frame of a good reply. True where it differs from the one before.
   bool on_frame(std::uint32_t frame, Instant now) noexcept;
 
+  /// At which new frames come, over some seconds; 0 where that is not known.
+  double frame_rate_hz() const noexcept { return frame_rate_hz_; }
+
   bool suspect(Instant now) const noexcept { return now - last_good_ >= suspect_after_; }
   bool silent(Instant now) const noexcept { return now - last_good_ >= lost_after_; }
   /// Good replies have come for three periods of the device and all told the same frame. The period is the
@@ -51,8 +54,8 @@ class LinkHealth {
 
   Nanos suspect_after_;
   Nanos lost_after_;
-  Nanos stuck_after_;  ///< 2.5 wished periods: replies come once a period, so the third repeat counts
-                       ///< whatever its jitter
+  Nanos stuck_after_;        ///< 2.5 wished periods: replies come once a period, so the third repeat counts
+                             ///< whatever its jitter
   std::uint32_t tolerated_;  ///< damaged replies in the window below which the line is good
   Instant last_good_{};
   Instant frame_changed_at_{};
@@ -61,6 +64,9 @@ class LinkHealth {
   Nanos frames_came_each_{};  ///< mean of the newest four; 0 until so many have come
   Instant four_began_{};
   int of_four_ = 0;
+  double frame_rate_hz_ = 0;
+  Instant count_began_{};
+  int counted_ = 0;
   bool frame_stuck_ = false;
   std::uint32_t damaged_in_a_row_ = 0;
   std::array<Second, kWindowSeconds> window_{};

@@ -410,15 +410,44 @@ void NdiDriver::plan(Instant now) noexcept {
   }
 }
 
-std::string NdiDriver::trouble_sentence() const {
-  std::string sentence(word_for(trouble_));
-  const int tool = failed_tool_;
-  const bool names_a_tool = trouble_ == TrackerTrouble::device_refuses ||
-                            trouble_ == TrackerTrouble::bad_answer || trouble_ == TrackerTrouble::tool_absent;
-  if (!names_a_tool) return sentence;
-  if (tool >= 0) sentence += " for tool " + settings_.tools[static_cast<std::size_t>(tool)].name();
-  if (refused_with_ != 0) sentence += ": " + std::string(ndi::error_word(refused_with_));
+TrackerState NdiDriver::state() const noexcept {
+  constexpr double kSlower = 0.8;
+  TrackerState state{.trouble = trouble_};
+  if (refuses(trouble_)) {
+    state.error_code = refused_with_;
+    state.tool = static_cast<std::int8_t>(failed_tool_);
+  }
+  if (health_ != TrackerHealth::live) return state;
+  for (int tool = reply_.tool_count - 1; tool >= 0; --tool) {
+    const auto index = static_cast<std::size_t>(tool);
+    // The reason is asked for: until it has come the port still counts as ready.
+    const bool told = (port_status_[index] & ndi::kPortReady) != ndi::kPortReady;
+    if (reply_.tools[index].state != ToolState::disabled || !told) continue;
+    state.disabled_tool = static_cast<std::int8_t>(tool);
+    state.port_status = port_status_[index];
+  }
+  const double rate_hz = watch_.frame_rate_hz();
+  if (rate_hz > 0 && rate_hz < kSlower * settings_.device_rate_hz)
+    state.slow_hz = static_cast<std::uint16_t>(std::lround(rate_hz));
+  return state;
+}
+
+std::string NdiDriver::trouble_sentence(const TrackerState& state) const {
+  std::string sentence(word_for(state.trouble));
+  if (state.tool >= 0)
+    sentence += " for tool " + settings_.tools[static_cast<std::size_t>(state.tool)].name();
+  if (state.error_code != 0) sentence += ": " + std::string(ndi::error_word(state.error_code));
   return sentence;
+}
+
+std::string NdiDriver::remark(const TrackerState& state) const {
+  if (state.disabled_tool >= 0) {
+    return "tool " + settings_.tools[static_cast<std::size_t>(state.disabled_tool)].name() +
+           " is not tracked: " + std::string(ndi::disabled_reason(state.port_status));
+  }
+  if (state.slow_hz == 0) return {};
+  return "the device measures at " + std::to_string(state.slow_hz) + " Hz, not at the " +
+         std::to_string(std::lround(settings_.device_rate_hz)) + " Hz of rate_hz; write what it does";
 }
 
 }  // namespace orcart

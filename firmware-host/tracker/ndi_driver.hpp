@@ -77,8 +77,14 @@ class NdiDriver {
   void beep(int times) noexcept { beeps_wanted_.store(times, std::memory_order_relaxed); }
   /// Why the tool is disabled, as its port says; "ready" where it is not.
   std::string_view disabled_reason(int tool) const noexcept;
-  /// The trouble in one sentence, with the device's error and the tool. Allocates: not for a step().
-  std::string trouble_sentence() const;
+  /// The trouble, and what does not please while it tracks.
+  TrackerState state() const noexcept;
+  /// The state's trouble in one sentence, with the device's error and the tool; "fine" where there is none.
+  /// Any thread. Allocates: not for a step().
+  std::string trouble_sentence(const TrackerState& state) const;
+  std::string trouble_sentence() const { return trouble_sentence(state()); }
+  /// What else the state says, in one sentence; empty where nothing. As above.
+  std::string remark(const TrackerState& state) const;
 
  private:
   enum class Phase : std::uint8_t { starting, polling, waiting };

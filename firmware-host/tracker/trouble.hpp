@@ -19,6 +19,25 @@ enum class TrackerTrouble : std::uint8_t {
   disconnected,    ///< the link is gone
 };
 
+/// The trouble with what stands behind it, for another thread: so small that it is handed over in one piece.
+struct TrackerState {
+  TrackerTrouble trouble = TrackerTrouble::none;
+  std::uint8_t error_code = 0;     ///< of the ERRORhh behind it; 0 where none is
+  std::int8_t tool = -1;           ///< that it is about; -1 where about none
+  std::int8_t disabled_tool = -1;  ///< the first that the device does not track, while it tracks
+  std::uint16_t port_status = 0;   ///< of that tool
+  std::uint16_t slow_hz = 0;       ///< what the device measures at where that is less than wished; else 0
+
+  bool operator==(const TrackerState&) const = default;
+};
+static_assert(sizeof(TrackerState) == 8);
+
+/// The device answers, but will not do as it is told: no cable's fault.
+constexpr bool refuses(TrackerTrouble trouble) noexcept {
+  return trouble == TrackerTrouble::device_refuses || trouble == TrackerTrouble::tool_absent ||
+         trouble == TrackerTrouble::bad_answer;
+}
+
 constexpr std::string_view word_for(TrackerTrouble trouble) noexcept {
   switch (trouble) {
     case TrackerTrouble::none:

@@ -25,6 +25,23 @@ TEST(DeviceLog, TellsOfFramesThatAllComeDamagedAndWhatMayHelp) {
             "camera: every frame comes damaged; another cable, port or format of the camera may do\n");
 }
 
+TEST(DeviceLog, TellsWhyTheTrackerDoesNotTrackAndWhatDoesNotPleaseWhileItDoes) {
+  DeviceLog log;
+  Cart::Now now;
+  now.tracker = "the tracker refuses a command for tool SCOPE: the tool definition is damaged";
+  EXPECT_EQ(
+      log.news(now),
+      "tracker: the tracker refuses a command for tool SCOPE: the tool definition is damaged; tried again "
+      "until it works\n");
+  EXPECT_EQ(log.news(now), "");
+  now.tracker = "";
+  now.tracker_remark = "the device measures at 20 Hz, not at the 60 Hz of rate_hz; write what it does";
+  EXPECT_EQ(log.news(now),
+            "tracker: works again\n"
+            "tracker: the device measures at 20 Hz, not at the 60 Hz of rate_hz; write what it does\n");
+  EXPECT_EQ(log.news(now), "");
+}
+
 TEST(DeviceLog, TellsATurnThatTheNotchContradictsOnceAndWhenTheyAgreeAgain) {
   DeviceLog log;
   Cart::Now now;

@@ -83,9 +83,18 @@ class PanelStageTest : public ::testing::Test {
                      .freshness = {.tracker_period = 16ms, .video_period = 33ms}}};
 };
 
+TEST_F(PanelStageTest, ATrackerThatRefusesIsNoMatterOfItsCable) {
+  const Instant came = instant_from_nanos(Nanos{2003ms}.count());
+  show(came);
+  lanes_.tracker_news.post({.refuses = true});
+  EXPECT_EQ(std::string_view(status_at(2000ms, 2004ms).notice.text.data()), "TRACKER REFUSES: see the log");
+  lanes_.tracker_news.post({});
+  EXPECT_EQ(std::string_view(status_at(2010ms, 2014ms).notice.text.data()), "TRACKER LOST: check its cable");
+}
+
 TEST_F(PanelStageTest, WhatCameSinceTheStepBeganIsLive) {
   const Instant came = instant_from_nanos(Nanos{2003ms}.count());
-  lanes_.tracker_news.post({.last_reply = came, .last_complete = came, .running = true});
+  lanes_.tracker_news.post({.last_reply = came, .last_complete = came});
   show(came);
   const Status& status = status_at(2000ms, 2004ms);
   EXPECT_EQ(status.tracker, Freshness::live);
@@ -111,7 +120,7 @@ TEST_F(PanelStageTest, OfWrongStampsThePictureStaysAndTheNoticeNamesThem) {
   const auto at = [](Nanos since) { return instant_from_nanos(since.count()); };
   show(at(3000ms), at(2000ms));
   lanes_.camera_news.post({.last_frame = at(3000ms), .last_dequeued = at(2000ms), .stamps_wrong = true});
-  lanes_.tracker_news.post({.last_reply = at(2000ms), .last_complete = at(2000ms), .running = true});
+  lanes_.tracker_news.post({.last_reply = at(2000ms), .last_complete = at(2000ms)});
   const Status& status = status_at(2010ms, 2010ms);
   EXPECT_EQ(status.video, Freshness::live);
   EXPECT_STREQ(status.notice.text.data(), "CAMERA STAMPS WRONG: see [camera] stamp");
@@ -128,7 +137,7 @@ TEST_F(PanelStageTest, SaysThatCapturesAreNotKeptWhileWritesFailAndAWhileAfterEa
   constexpr const char* kNotKept = "SESSION NOT KEPT: the disk is full or too slow";
   const auto notice_at = [&](Nanos at) {
     const Instant now = instant_from_nanos(at.count());
-    lanes_.tracker_news.post({.last_reply = now, .last_complete = now, .running = true});
+    lanes_.tracker_news.post({.last_reply = now, .last_complete = now});
     show(now);
     const Notice& notice = status_at(at, at).notice;
     return notice.level == Notice::Level::none ? std::string() : std::string(notice.text.data());

@@ -88,5 +88,25 @@ TEST(TrackerStage, StampsWhatWasMeasuredWhateverTheCounterRunsAt) {
   }
 }
 
+TEST(TrackerStage, TellsAnotherThreadWhatIsWrongAndWhatDoesNotPlease) {
+  StageRig slow(60, {.model = NdiModel::polaris, .measures_each = 3});
+  (void)slow.worst_stamp(8s);
+  EXPECT_EQ(slow.tracker.driver.remark(slow.stage.state()),
+            "the device measures at 20 Hz, not at the 60 Hz of rate_hz; write what it does");
+  StageRig rig(60, {});
+  (void)rig.worst_stamp(8s);
+  EXPECT_EQ(rig.stage.state(), TrackerState{});
+  const Instant now = rig.tracker.clock.now();
+  rig.tracker.device.faults().add(
+      {.fault = NdiFault::unplugged, .from = now, .until = now + 1s, .amount = 1});
+  (void)rig.worst_stamp(500ms);
+  EXPECT_EQ(
+      rig.tracker.driver.remark(rig.stage.state()),
+      "tool REFERENCE is not tracked: no tool in the port: unplugged, or its definition was not loaded");
+  rig.tracker.device.faults().add({.fault = NdiFault::silence, .from = now + 500ms, .until = now + 2s});
+  (void)rig.worst_stamp(1s);
+  EXPECT_EQ(rig.tracker.driver.trouble_sentence(rig.stage.state()), "the tracker has fallen silent");
+}
+
 }  // namespace
 }  // namespace orcart::testing
