@@ -238,8 +238,11 @@ Result<PaintBenchReport> run_paint_bench(const Surface& surface, std::span<const
     const Eigen::Vector3d back = -X_MC.rotation.col(2), up = -X_MC.rotation.col(1);
     bench.run(patch, eye_on(surface.mesh, back, up), ++unit, settings.frames_per_pose);
   }
+  if (unit == 0)
+    return fail("none of the " + std::to_string(poses.size()) +
+                " poses sees the surface; check their space, or try the other --seen-from");
   PaintBenchReport report{.triangles = surface.mesh.triangles.size(),
-                          .poses = poses.size(),
+                          .poses = unit,
                           .texel_mm = layout->texel_mm,
                           .atlas_size_texels = layout->width_texels,
                           .renderer = context->renderer_name()};

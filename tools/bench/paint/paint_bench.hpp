@@ -39,7 +39,8 @@ struct Spread {
 };
 
 struct PaintBenchReport {
-  std::size_t triangles = 0, poses = 0;
+  std::size_t triangles = 0;
+  std::size_t poses = 0;  ///< that see the surface; the others are in no figure but the cutout's
   double texel_mm = 0;
   int atlas_size_texels = 0;
   std::uint32_t cutout_triangles_median = 0;  ///< painted or hiding
@@ -53,7 +54,7 @@ struct PaintBenchReport {
 };
 
 /// A new 1920 x 1080 NV12 frame for every step, a panel of 1280 x 800 with all that is on it. Needs a machine
-/// that can open EGL. The cutout is timed apart and is in no other figure.
+/// that can open EGL, and a pose that sees the surface. The cutout is timed apart and is in no other figure.
 Result<PaintBenchReport> run_paint_bench(const Surface& surface, std::span<const Pose<M, C>> poses,
                                          const PaintBenchSettings& settings);
 

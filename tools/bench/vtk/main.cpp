@@ -134,6 +134,11 @@ int run(const char* surface_file, const char* poses_file) {
                  (!surface ? surface.error() : poses.error()).message.c_str());
     return 1;
   }
+  if (poses->size() < kBlock) {
+    std::fprintf(stderr, "orcart_bench_vtk: %s: holds %zu poses; at least %zu are expected\n", poses_file,
+                 poses->size(), kBlock);
+    return 1;
+  }
   auto tree = ClusterTree::create(surface->mesh);
   auto rays = RayScene::create(surface->mesh);
   if (!tree || !rays) {
