@@ -1,6 +1,8 @@
 // The corners' directions, flattened, go to a perspective-n-point solver.
 #include "tools/calibration/board_pose.hpp"
 
+#include <algorithm>
+#include <numbers>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -23,6 +25,31 @@ Result<Pose<C, B>> board_pose(const BoardView& view, const Lens& lens) {
   const Eigen::Vector3d turn(r[0], r[1], r[2]);
   return Pose<C, B>{.rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix(),
                     .translation_mm = {t[0], t[1], t[2]}};
+}
+
+std::vector<int> turns_alike(Anchor anchor) {
+  if (anchor == Anchor::half_turn) return {0, 2};
+  if (anchor == Anchor::quarter_turn) return {0, 1, 2, 3};
+  return {0};
+}
+
+Pose<B, B> turned_about_middle(const Pattern& pattern, int quarter_turns) {
+  const Eigen::Vector3d middle =
+      0.5 * pattern.place_mm({pattern.corner_columns() - 1, pattern.corner_rows() - 1});
+  Pose<B, B> turn;
+  turn.rotation =
+      Eigen::AngleAxisd(0.5 * std::numbers::pi * quarter_turns, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  turn.translation_mm = middle - turn.rotation * middle;
+  return turn;
+}
+
+void keep_one_numbering(std::vector<BoardView>& views) {
+  if (std::ranges::none_of(views, &BoardView::coloured)) return;
+  for (BoardView& view : views) {
+    if (view.coloured || view.corners.empty() || view.anchor == Anchor::none) continue;
+    view.anchor = Anchor::none;
+    view.remark = "no coloured dots, which other pictures have";
+  }
 }
 
 }  // namespace orcart

@@ -22,9 +22,10 @@ struct BoardCorner {
 /// How surely the corners' numbers belong to the same corners in every picture. A free pose needs none of it;
 /// hand-eye does.
 enum class Anchor {
-  none,       ///< a part of the board, anywhere on it
-  half_turn,  ///< the whole board, but it looks the same upside down
-  sure,       ///< markers, coloured dots, or a whole board that has an upper side
+  none,          ///< a part of the board, anywhere on it
+  half_turn,     ///< the whole board, but it looks the same upside down
+  quarter_turn,  ///< the same, and on its sides too: as many columns as rows
+  sure,          ///< markers, coloured dots, or a whole board that has an upper side
 };
 
 struct BoardView {
@@ -32,6 +33,7 @@ struct BoardView {
   int width_px = 0, height_px = 0;
   std::vector<BoardCorner> corners;
   Anchor anchor = Anchor::none;
+  bool coloured = false;      ///< numbered from coloured dots, which need not lie at the board's first corner
   int columns = 0, rows = 0;  ///< extent of what is seen, in corners
   std::string remark;         ///< why there are no corners, or what was special
 };

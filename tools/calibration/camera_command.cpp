@@ -10,6 +10,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "tools/calibration/board_pose.hpp"
 #include "tools/calibration/camera_checks.hpp"
 #include "tools/calibration/fall_off_fit.hpp"
 #include "tools/calibration/hand_eye.hpp"
@@ -159,6 +160,7 @@ Result<SeenPictures> see_boards(const std::vector<std::filesystem::path>& images
   for (std::size_t i = 0; i < images.size(); ++i)
     if (seen.pictures[i].empty())
       return fail(images[i].string() + ": cannot be read as a picture; PNG, JPEG, TIFF and BMP are accepted");
+  keep_one_numbering(seen.views);
   return seen;
 }
 

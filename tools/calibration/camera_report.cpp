@@ -136,7 +136,7 @@ std::string camera_text(const CameraCalibration& c) {
 
 std::string camera_json(const CameraCalibration& c) {
   const Lens& lens = c.scope.lens;
-  std::vector<std::string> views, unused, hints, rows;
+  std::vector<std::string> views, unused, notes, hints, rows;
   for (std::size_t v = 0; v < c.views.size(); ++v) {
     const ViewFit& fit = c.fit.views[v];
     views.push_back(
@@ -149,6 +149,7 @@ std::string camera_json(const CameraCalibration& c) {
   for (const BoardView& view : c.unused)
     unused.push_back("{\"image\": " + json::text(view.image.string()) +
                      ", \"why\": " + json::text(view.remark) + "}");
+  for (const std::string& note : c.notes) notes.push_back(json::text(note));
   for (const std::string& hint : c.hints) hints.push_back(json::text(hint));
   if (c.scope.lens_covariance) {
     const LensCovariance& covariance = *c.scope.lens_covariance;
@@ -171,31 +172,21 @@ std::string camera_json(const CameraCalibration& c) {
          ", \"max_angle_rad\": " + json::number(lens.max_angle_rad) + ", \"vignetting_cos_power\": " +
          json::number(c.vignetting_known ? c.scope.fall_off.vignetting_cos_power : NAN) +
          ", \"covered\": " + json::number(c.covered) + ",\n \"views\": " + json::list(views) +
-         ",\n \"unused\": " + json::list(unused) + ",\n \"hints\": " + json::list(hints) + "}\n";
+         ",\n \"unused\": " + json::list(unused) + ",\n \"notes\": " + json::list(notes) +
+         ",\n \"hints\": " + json::list(hints) + "}\n";
 }
 
 Result<std::string> camera_page(const CameraCalibration& c) {
-  std::string text = camera_text(c), escaped;
-  for (const char letter : text)
-    escaped += letter == '<'   ? std::string("&lt;")
-               : letter == '&' ? std::string("&amp;")
-                               : std::string(1, letter);
-  std::string page =
-      "<!doctype html><meta charset='utf-8'><title>Camera calibration</title><style>body{font:15px "
-      "sans-serif;margin:24px;max-width:1320px}"
-      "pre{background:#f4f4f4;padding:12px;overflow-x:auto}figure{display:inline-block;margin:6px;vertical-"
-      "align:top}"
-      "figcaption{font-size:13px}img{max-width:420px}</style><h1>Camera calibration: " +
-      c.scope.name + "</h1><p>" + c.scope.calibrated_on +
-      ". Research use only; not a medical device.</p><pre>" + escaped + "</pre>" + plots(c) +
-      "<h2>The board in each picture</h2><p>Green: corners found. Red: residuals, twenty times as long. "
-      "Blue: the mask.</p>";
+  std::string body =
+      "<p>" + html_escaped(c.scope.calibrated_on) + "</p>" + plots(c) +
+      "<h2>The board in each picture</h2><p>Green: corners found. Red: residuals, twenty times as "
+      "long. Blue: the mask.</p>";
   for (std::size_t v = 0; v < c.views.size(); ++v)
-    page += "<figure><img src='" + picture_url(drawn(c, v)) + "'><figcaption>" +
-            c.views[v].image.filename().string() +
+    body += "<figure><img src='" + picture_url(drawn(c, v)) + "'><figcaption>" +
+            html_escaped(c.views[v].image.filename().string()) +
             json::format(": %.3f px, %.4f mm", c.fit.views[v].rms_px, c.fit.views[v].rms_mm) +
             "</figcaption></figure>";
-  return page + "\n";
+  return html_page({"Camera calibration: " + c.scope.name, camera_text(c), body});
 }
 
 }  // namespace orcart

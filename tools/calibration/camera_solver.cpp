@@ -29,13 +29,18 @@ struct CornerCost {
   }
 };
 
-/// The distance along the optical axis is known but for an offset common to all views.
+/// The distance to the board's plane along the optical axis is known but for an offset common to all views:
+/// it is the same whichever corner a view counts from.
 struct DistanceCost {
   double distance_mm;
   template <class T>
   bool operator()(const T* pose, const T* offset, T* residual) const {
     constexpr double kStageSigma_mm = 0.05;
-    residual[0] = (pose[5] - offset[0] - distance_mm) / kStageSigma_mm;
+    const T z[3] = {T(0), T(0), T(1)};
+    T normal[3];
+    ceres::AngleAxisRotatePoint(pose, z, normal);
+    const T along = normal[0] * pose[3] + normal[1] * pose[4] + normal[2] * pose[5];
+    residual[0] = (along / normal[2] - offset[0] - distance_mm) / kStageSigma_mm;
     return true;
   }
 };
@@ -112,8 +117,10 @@ class Solver {
     if (!covariance.Compute(blocks, &problem)) return false;
     Eigen::Matrix<double, kIntrinsics, kIntrinsics, Eigen::RowMajor> values;
     covariance.GetCovarianceBlock(block, block, values.data());
-    const double free =
-        2.0 * static_cast<double>(fit.corners) - kIntrinsics - 6.0 * static_cast<double>(views_.size());
+    const auto views = static_cast<double>(views_.size());
+    const double known = task_.distances_mm.empty() ? 0 : views - 1;  // all but their common offset
+    const double free = 2.0 * static_cast<double>(fit.corners) + known -
+                        (kIntrinsics - static_cast<double>(fixed.size())) - 6.0 * views;
     values *= 2 * state.cost / std::max(1.0, free);
     for (int i = 0; i < kIntrinsics; ++i)
       fit.deviations[static_cast<std::size_t>(i)] = std::sqrt(std::max(0.0, values(i, i)));

@@ -112,6 +112,8 @@ std::vector<BoardCorner> anchored(const Lattice& lattice, const ColouredDots& do
 Anchor anchor_whole(const cv::Mat& smoothed, Lattice& lattice, const Pattern& pattern) {
   const bool square = pattern.columns == pattern.rows;
   if ((pattern.columns + pattern.rows) % 2 == 0) {
+    // With an even number of corners a side all four corner squares are of one colour.
+    if (square && pattern.columns % 2 == 0) return Anchor::quarter_turn;
     if (square && even_squares_bright(smoothed, lattice)) lattice = turned(lattice, 1);
     return Anchor::half_turn;
   }
@@ -161,6 +163,7 @@ BoardView find_chessboard(const cv::Mat& picture, const Pattern& pattern) {
   if (const auto dots = find_coloured_dots(picture, lattice)) {
     view.corners = anchored(lattice, *dots, pattern);
     view.anchor = Anchor::sure;
+    view.coloured = true;
     view.remark = "anchored by coloured dots";
     return view;
   }

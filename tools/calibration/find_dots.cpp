@@ -110,7 +110,7 @@ BoardView find_dots(const cv::Mat& picture, const Pattern& pattern) {
   const LatticeSize size = size_of(best);
   view.columns = size.columns, view.rows = size.rows;
   if (size.columns == pattern.columns && size.rows == pattern.rows) {
-    view.anchor = Anchor::half_turn;
+    view.anchor = size.columns == size.rows ? Anchor::quarter_turn : Anchor::half_turn;
   } else {
     view.remark = "a part of the grid: " + std::to_string(size.columns) + "x" + std::to_string(size.rows);
   }

@@ -80,8 +80,9 @@ double corners_alike(const std::vector<HandEyeView>& views, const Lens& lens);
 double tracker_floor_mm(const std::vector<HandEyeView>& views, const HandEyeFit& fit,
                         const TrackerNoise& noise);
 
-/// Boards that look the same upside down are turned so that all views agree with the motion of the marker.
-void settle_half_turns(std::vector<HandEyeView>& views, const Pattern& pattern);
+/// Boards that look the same upside down, or on their sides, are turned so that all views agree with the
+/// motion of the marker.
+void settle_turns(std::vector<HandEyeView>& views, const Pattern& pattern);
 
 /// RMS distance of the board's origins from their mean for given hand-eye pose; fills `each`.
 double scatter_mm(const std::vector<HandEyeView>& views, const Pose<S, C>& X_SC, std::vector<double>& each);

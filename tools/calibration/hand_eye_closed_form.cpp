@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "tools/calibration/board_pose.hpp"
 #include "tools/calibration/hand_eye.hpp"
 #include "tools/registration/json_text.hpp"
 
@@ -28,11 +29,37 @@ Motion motion(const HandEyeView& i, const HandEyeView& j) {
   return {.A = j.X_TS.inverse() * i.X_TS, .B_camera = j.X_CB * i.X_CB.inverse()};
 }
 
-Pose<C, B> half_turned(const Pose<C, B>& X_CB, const Eigen::Vector3d& far_corner_mm) {
-  Pose<B, B> turn;
-  turn.rotation = Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  turn.translation_mm = far_corner_mm;
-  return X_CB * turn;
+/// How much the marker and the camera turn otherwise between this view and the others up to `end`.
+double disagreement(const HandEyeView& view, const std::vector<HandEyeView>& views, std::size_t own,
+                    std::size_t end) {
+  double sum = 0;
+  for (std::size_t j = 0; j < end; ++j) {
+    if (j == own) continue;
+    const Motion m = motion(views[j], view);
+    sum += std::abs(rotation_vector(m.A.rotation).norm() - rotation_vector(m.B_camera.rotation).norm());
+  }
+  return sum;
+}
+
+/// Turns one view's board to where it agrees best with the views before `end`; false where it was so already.
+bool settle(std::vector<HandEyeView>& views, std::size_t own, std::size_t end, const Pattern& pattern) {
+  HandEyeView& view = views[own];
+  int best = 0;
+  double least = disagreement(view, views, own, end);
+  for (const int turns : turns_alike(view.board.anchor)) {
+    HandEyeView tried{
+        .X_TS = view.X_TS, .X_CB = view.X_CB * turned_about_middle(pattern, turns), .board = {}};
+    const double off = disagreement(tried, views, own, end);
+    if (turns != 0 && off < least) best = turns, least = off;
+  }
+  if (best == 0) return false;
+  const Pose<B, B> turn = turned_about_middle(pattern, best), back = turn.inverse();
+  view.X_CB = view.X_CB * turn;
+  for (BoardCorner& c : view.board.corners) {
+    c.board_mm = (back * Point<B>{c.board_mm}).mm;
+    c.lattice = (c.board_mm.head<2>() / pattern.spacing_mm).array().round().cast<int>();
+  }
+  return true;
 }
 
 }  // namespace
@@ -53,28 +80,14 @@ double scatter_mm(const std::vector<HandEyeView>& views, const Pose<S, C>& X_SC,
   return std::sqrt(sum2 / static_cast<double>(views.size()));
 }
 
-void settle_half_turns(std::vector<HandEyeView>& views, const Pattern& pattern) {
-  const Eigen::Vector3d far_corner =
-      pattern.place_mm({pattern.corner_columns() - 1, pattern.corner_rows() - 1});
-  for (std::size_t i = 1; i < views.size(); ++i) {
-    if (views[i].board.anchor != Anchor::half_turn) continue;
-    const auto disagreement = [&](const Pose<C, B>& X_CB) {
-      HandEyeView tried = views[i];
-      tried.X_CB = X_CB;
-      double sum = 0;
-      for (std::size_t j = 0; j < i; ++j) {
-        const Motion m = motion(views[j], tried);
-        sum += std::abs(rotation_vector(m.A.rotation).norm() - rotation_vector(m.B_camera.rotation).norm());
-      }
-      return sum;
-    };
-    const Pose<C, B> other = half_turned(views[i].X_CB, far_corner);
-    if (disagreement(other) >= disagreement(views[i].X_CB)) continue;
-    views[i].X_CB = other;
-    for (BoardCorner& c : views[i].board.corners) {
-      c.lattice = Eigen::Vector2i(pattern.corner_columns() - 1, pattern.corner_rows() - 1) - c.lattice;
-      c.board_mm = far_corner - c.board_mm;
-    }
+void settle_turns(std::vector<HandEyeView>& views, const Pattern& pattern) {
+  constexpr int kRounds = 5;
+  for (std::size_t i = 1; i < views.size(); ++i) settle(views, i, i, pattern);
+  // The first few were settled by few; now all are there.
+  bool moved = true;
+  for (int round = 0; moved && round < kRounds; ++round) {
+    moved = false;
+    for (std::size_t i = 1; i < views.size(); ++i) moved = settle(views, i, views.size(), pattern) || moved;
   }
 }
 

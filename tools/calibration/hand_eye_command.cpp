@@ -73,14 +73,25 @@ void take_spread(HandEyeCalibration& result) {
 Result<std::vector<Pose<T, S>>> poses_of_pictures(const std::vector<std::filesystem::path>& images,
                                                   const PosesFile& poses, const std::filesystem::path& file) {
   std::map<std::string, Pose<T, S>> by_name;
-  for (const NamedPose& pose : poses.poses) by_name[pose.name] = pose.X_TS;
+  bool named = false;
+  for (const NamedPose& pose : poses.poses) {
+    by_name[pose.name] = pose.X_TS;
+    named = named || !pose.numbered;
+  }
   std::vector<Pose<T, S>> result;
+  std::string missing;
   for (const auto& image : images) {
     auto found = by_name.find(image.filename().string());
     if (found == by_name.end()) found = by_name.find(image.stem().string());
-    if (found != by_name.end()) result.push_back(found->second);
+    if (found != by_name.end())
+      result.push_back(found->second);
+    else
+      missing += (missing.empty() ? "" : ", ") + image.filename().string();
   }
   if (result.size() == images.size()) return result;
+  if (named && !result.empty())
+    return fail(file.string() + ": names some of the pictures, but has no pose named " + missing +
+                "; a pose for each picture is accepted");
   if (poses.poses.size() != images.size())
     return fail(file.string() + ": " + std::to_string(poses.poses.size()) + " poses for " +
                 std::to_string(images.size()) +
@@ -93,6 +104,10 @@ Result<std::vector<Pose<T, S>>> poses_of_pictures(const std::vector<std::filesys
 Result<HandEyeCalibration> calibrate_hand_eye(const HandEyeCommand& command, const ScopeModel& scope,
                                               const Progress& progress) {
   constexpr double kLargestScatter_mm = 8;
+  if (command.noise.poses_in == PosesIn::reference && command.noise.depth_ratio != 1)
+    return fail(
+        "--depth-ratio is along the sensor's z, which poses in the reference do not know; it goes with "
+        "--poses-in tracker");
   const auto poses = read_poses(command.poses);
   if (!poses) return tl::unexpected(poses.error());
   const auto X_TS = poses_of_pictures(command.images, *poses, command.poses);
@@ -119,7 +134,7 @@ Result<HandEyeCalibration> calibrate_hand_eye(const HandEyeCommand& command, con
     views.push_back({.X_TS = (*X_TS)[i], .X_CB = *X_CB, .board = view});
     result.names.push_back(name);
   }
-  settle_half_turns(views, command.pattern);
+  settle_turns(views, command.pattern);
   auto closed = hand_eye_closed_form(views);
   if (!closed) return tl::unexpected(closed.error());
   result.closed_form = std::move(*closed);
@@ -141,8 +156,7 @@ Result<HandEyeCalibration> calibrate_hand_eye(const HandEyeCommand& command, con
   result.scope.lens = result.refined.lens;
   result.scope.X_SC = result.refined.X_SC;
   take_spread(result);
-  result.scope.residual_mm =
-      result.leave_one_out_mm > 0 ? result.leave_one_out_mm : result.refined.scatter_mm;
+  result.scope.residual_mm = result.leave_one_out_mm.value_or(result.refined.scatter_mm);
   return result;
 }
 

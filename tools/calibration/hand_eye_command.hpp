@@ -22,19 +22,19 @@ struct HandEyeCommand {
 struct HandEyeCalibration {
   ScopeModel scope;  ///< the passport given, with X_SC, the refined lens and residual_mm
   HandEyeFit closed_form, refined;
-  std::optional<HandEyeSpread> spread;  ///< nothing where the views leave something open
-  double leave_one_out_mm = 0;
-  std::vector<double> left_out_mm;  ///< of each view
-  double least_left_out_mm = 0;     ///< no hand-eye pose could make the figure over all views smaller
-  double floor_mm = 0;              ///< what the declared tracker noise alone makes of the board's scatter
-  std::vector<std::string> names;   ///< of the views used
-  std::vector<HandEyeView> views;   ///< those used, as they went into the fits
-  RefineTask task;                  ///< how they were fitted
+  std::optional<HandEyeSpread> spread;     ///< nothing where the views leave something open
+  std::optional<double> leave_one_out_mm;  ///< nothing where three views leave none out
+  std::vector<double> left_out_mm;         ///< of each view
+  double least_left_out_mm = 0;            ///< no hand-eye pose could make the figure over all views smaller
+  double floor_mm = 0;             ///< what the declared tracker noise alone makes of the board's scatter
+  std::vector<std::string> names;  ///< of the views used
+  std::vector<HandEyeView> views;  ///< those used, as they went into the fits
+  RefineTask task;                 ///< how they were fitted
   std::vector<std::string> notes;
 };
 
-/// Poses belong to pictures by name (of the file, with or without its ending) where all names are there, else
-/// by order. `file` is for the sentence.
+/// Poses belong to pictures by name (of the file, with or without its ending) where all names are there, by
+/// order where none is. Refuses names of which only some are there. `file` is for the sentence.
 Result<std::vector<Pose<T, S>>> poses_of_pictures(const std::vector<std::filesystem::path>& images,
                                                   const PosesFile& poses, const std::filesystem::path& file);
 

@@ -48,26 +48,26 @@ std::optional<SeenBoard> sight_of_board(const cv::Mat& picture, double at_s, con
   return SeenBoard{.sight = {.at_s = at_s,
                              .marker_mm = (X_BC * scope.X_SC.inverse()).translation_mm,
                              .camera_mm = X_BC.translation_mm},
-                   .half_turn = view.anchor == Anchor::half_turn};
+                   .anchor = view.anchor,
+                   .coloured = view.coloured};
 }
 
 std::vector<BoardSight> settled(const std::vector<std::optional<SeenBoard>>& seen, const Pattern& pattern) {
-  const Eigen::Vector3d corner = pattern.place_mm({pattern.corner_columns() - 1, pattern.corner_rows() - 1});
-  const auto turned = [&](const Eigen::Vector3d& p) {
-    return Eigen::Vector3d(corner.x() - p.x(), corner.y() - p.y(), p.z());
-  };
+  const bool dotted = std::ranges::any_of(seen, [](const auto& one) { return one && one->coloured; });
   std::vector<BoardSight> sights;
   for (const auto& one : seen) {
-    if (!one) continue;
-    BoardSight sight = one->sight;
-    if (one->half_turn && !sights.empty()) {
-      const BoardSight other{
-          .at_s = sight.at_s, .marker_mm = turned(sight.marker_mm), .camera_mm = turned(sight.camera_mm)};
-      const BoardSight& last = sights.back();
-      if ((other.marker_mm - last.marker_mm).norm() < (sight.marker_mm - last.marker_mm).norm())
-        sight = other;
+    if (!one || (dotted && !one->coloured)) continue;
+    BoardSight best = one->sight;
+    for (const int turns : turns_alike(one->anchor)) {
+      if (sights.empty()) break;
+      const Pose<B, B> back = turned_about_middle(pattern, turns).inverse();
+      const BoardSight other{.at_s = best.at_s,
+                             .marker_mm = (back * Point<B>{one->sight.marker_mm}).mm,
+                             .camera_mm = (back * Point<B>{one->sight.camera_mm}).mm};
+      const Eigen::Vector3d& last = sights.back().marker_mm;
+      if ((other.marker_mm - last).norm() < (best.marker_mm - last).norm()) best = other;
     }
-    sights.push_back(sight);
+    sights.push_back(best);
   }
   return sights;
 }

@@ -8,15 +8,16 @@
 #include <opencv2/core.hpp>
 
 #include "realtime/optics/scope_model.hpp"
-#include "tools/calibration/pattern.hpp"
+#include "tools/calibration/board_view.hpp"
 #include "tools/calibration/time_lag.hpp"
 
 namespace orcart {
 
-/// A board as one picture shows it. Boards that look the same upside down are told by `half_turn`.
+/// A board as one picture shows it; `anchor` tells whether it looks the same when it is turned.
 struct SeenBoard {
   BoardSight sight;
-  bool half_turn = false;
+  Anchor anchor = Anchor::sure;
+  bool coloured = false;  ///< as BoardView::coloured
 };
 
 /// Nothing where no board is found, or which of its corners is which cannot be told. Needs a passport with
@@ -24,7 +25,8 @@ struct SeenBoard {
 std::optional<SeenBoard> sight_of_board(const cv::Mat& picture, double at_s, const Pattern& pattern,
                                         const ScopeModel& scope);
 
-/// Boards that look the same upside down are turned so that the scope moves on from picture to picture.
+/// Boards that look the same when they are turned are turned so that the scope moves on from picture to
+/// picture. Where coloured dots are seen in some, pictures without them are left out.
 std::vector<BoardSight> settled(const std::vector<std::optional<SeenBoard>>& seen, const Pattern& pattern);
 
 /// Follows features from picture to picture (Lucas and Kanade 1981, in pyramids, there and back), inside the

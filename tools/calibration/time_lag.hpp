@@ -64,8 +64,8 @@ struct LagFit {
   std::vector<double> lags_s, misfits;  ///< the curve: RMS over all movements against the lag
 };
 
-/// Stretches in which the marker moves: faster than a fifth of its swift pace (95th percentile), at least 0.2
-/// s long and 5 mm far (rotation counted at 100 mm). Cut where longer than 2 s.
+/// Stretches in which the marker moves: faster than a fifth of its swift pace (95th percentile), and 2 mm/s,
+/// at least 0.2 s long and 5 mm far (rotation counted at 100 mm). Cut where longer than 2.5 s.
 struct Stretch_s {
   double from_s = 0, to_s = 0;
 };

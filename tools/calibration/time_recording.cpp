@@ -51,6 +51,12 @@ Result<cv::Mat> bgr_of(StoredPicture& stored) {
   return fail("pictures of an unknown format; yuyv, uyvy, nv12, rgba, xrgb and grey are accepted");
 }
 
+Result<cv::Mat> of_scope(Result<cv::Mat> picture, const ScopeModel& scope, const std::string& name) {
+  if (!picture || (picture->cols == scope.width_px && picture->rows == scope.height_px)) return picture;
+  return fail(name + json::format(": %dx%d px; the scope's %dx%d are accepted", picture->cols, picture->rows,
+                                  scope.width_px, scope.height_px));
+}
+
 Result<TimeRecording> read_session(const std::filesystem::path& file,
                                    const std::filesystem::path& scope_file) {
   auto opened = SessionReader::open(file);
@@ -86,11 +92,13 @@ Result<TimeRecording> read_session(const std::filesystem::path& file,
     ids->push_back(c.id);
   }
   const auto one_at_a_time = std::make_shared<std::mutex>();
-  recording.picture = [session, ids, one_at_a_time](std::size_t frame) -> Result<cv::Mat> {
+  recording.picture = [session, ids, one_at_a_time, file,
+                       scope = *scope](std::size_t frame) -> Result<cv::Mat> {
     const std::lock_guard lock(*one_at_a_time);
     auto stored = session->picture((*ids)[frame]);
     if (!stored) return tl::unexpected(stored.error());
-    return bgr_of(*stored);
+    return of_scope(bgr_of(*stored), scope,
+                    file.string() + " (capture " + std::to_string((*ids)[frame]) + ")");
   };
   return recording;
 }
@@ -155,13 +163,13 @@ Result<TimeRecording> read_folder(const std::filesystem::path& folder,
   if (!track) return tl::unexpected(track.error());
   recording.track = std::move(*track);
   for (const FrameRow& row : *frames) recording.frames_at_s.push_back(row.at_s);
-  recording.picture = [rows = std::move(*frames)](std::size_t frame) -> Result<cv::Mat> {
+  recording.picture = [rows = std::move(*frames), scope = *scope](std::size_t frame) -> Result<cv::Mat> {
     cv::Mat picture;
     if (std::filesystem::exists(rows[frame].image)) picture = load_picture(rows[frame].image);
     if (picture.empty())
       return fail(rows[frame].image.string() +
                   ": cannot be read as a picture; PNG, JPEG, TIFF and BMP are accepted");
-    return picture;
+    return of_scope(std::move(picture), scope, rows[frame].image.string());
   };
   return recording;
 }
@@ -173,12 +181,7 @@ Result<TimeRecording> read_time_recording(const std::filesystem::path& recording
   auto read = std::filesystem::is_directory(recording) ? read_folder(recording, scope_file)
                                                        : read_session(recording, scope_file);
   if (!read) return read;
-  const auto first = read->picture(0);
-  if (!first) return tl::unexpected(first.error());
-  if (first->cols != read->scope.width_px || first->rows != read->scope.height_px)
-    return fail(recording.string() + json::format(": pictures of %dx%d px; the scope's %dx%d are accepted",
-                                                  first->cols, first->rows, read->scope.width_px,
-                                                  read->scope.height_px));
+  if (const auto first = read->picture(0); !first) return tl::unexpected(first.error());
   return read;
 }
 

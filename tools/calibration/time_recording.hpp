@@ -18,7 +18,7 @@ namespace orcart {
 struct TimeRecording {
   std::vector<TrackedPose> track;   ///< rising in time
   std::vector<double> frames_at_s;  ///< mid-exposures, rising, on the same clock
-  /// The picture (8 bit, BGR) of a frame. Any thread.
+  /// The picture (8 bit, BGR) of a frame; refuses one that is not of the scope's size. Any thread.
   std::function<Result<cv::Mat>(std::size_t frame)> picture;
   ScopeModel scope;
   double recorded_with_s = 0;  ///< what [sync] tracker_against_video already had shifted the poses by
@@ -32,7 +32,8 @@ struct TimeRecording {
 /// Or a folder: frames.csv (image,time_ms: mid-exposure), poses.csv (time_ms,m00,...,m23: the scope marker in
 /// the tracker or in a reference that stands still, mm), the pictures, and `scope_file`.
 ///
-/// Refuses a session without streams, stamps that do not rise, and sizes that are not the scope's.
+/// Refuses a session without streams, stamps that do not rise, and a first picture that is not of the
+/// scope's size.
 Result<TimeRecording> read_time_recording(const std::filesystem::path& recording,
                                           const std::filesystem::path& scope_file);
 

@@ -14,7 +14,7 @@ enum class PosesIn {
 struct TrackerNoise {
   double marker_mm = 0.25;     ///< RMS of one marker's 3-D error, as trackers state it
   double body_radius_mm = 30;  ///< RMS distance of the four markers from their middle
-  double depth_ratio = 1;      ///< noise along the sensor's z against x and y; 3 for a Polaris
+  double depth_ratio = 1;  ///< along the sensor's z against x and y; 3 for a Polaris. In the reference: none
   PosesIn poses_in = PosesIn::tracker;
 };
 

@@ -241,6 +241,8 @@ Result<Belongings> read_belongings(const EvaluateCommand& command) {
   if (!scope) return tl::unexpected(scope.error());
   auto registration = read_registration(command.registration);
   if (!registration) return tl::unexpected(registration.error());
+  if (auto own = check_surface(*registration, surface->identity.hash); !own)
+    return fail(command.registration.string() + ": " + own.error().message);
   return Belongings{.surface = *std::move(surface),
                     .rays = *std::move(rays),
                     .scope = *std::move(scope),

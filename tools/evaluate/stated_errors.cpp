@@ -103,6 +103,12 @@ Result<void> check_turn_told(const ErrorModel& model, const ScopeModel& scope) {
               ", whose passport has no [turning]; one of a scope that turns is accepted");
 }
 
+Result<void> check_surface(const RegistrationFile& registration, const std::string& surface_hash) {
+  if (registration.surface_hash == surface_hash || registration.surface_hash == "unstated") return {};
+  return fail("belongs to the surface " + registration.surface_hash + ", not to this one, " + surface_hash +
+              "; register again on this surface, or bring the one that was registered");
+}
+
 std::string sources_text(const ErrorModel& m) {
   std::string registration = "from its file (registration)";
   if (!m.registration_root)

@@ -20,6 +20,9 @@ ErrorModel with_turn(const ErrorModel& assumed, double deviation_rad, ErrorFrom 
 /// Refuses a turn's deviation that was told of a scope that does not turn.
 Result<void> check_turn_told(const ErrorModel& model, const ScopeModel& scope);
 
+/// Refuses a registration that states another surface; one that states none is let pass.
+Result<void> check_surface(const RegistrationFile& registration, const std::string& surface_hash);
+
 /// One line: each part's size, and in brackets where it comes from.
 std::string sources_text(const ErrorModel& model);
 /// {"hand-eye": "passport", "registration": "assumed", ...}

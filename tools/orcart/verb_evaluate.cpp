@@ -21,11 +21,13 @@ constexpr const char* kFooter =
     "paper\n"
     "(0.25), both, or a number in mm. With --views the recorded pictures are compared with each other, "
     "without\n"
-    "landmarks.\n\n"
+    "landmarks. Surface, registration and reference markers are the demo's unless all three are told, scope "
+    "and\nits markers unless both are.\n\n"
     "Examples:\n"
     "  orcart evaluate --page out/evaluation\n"
     "  orcart evaluate --noise vega --setups 200 --json\n"
-    "  orcart evaluate --surface s.ply --scope scope.toml --seen-from outside --views views.csv\n"
+    "  orcart evaluate --surface s.ply --registration registration.toml --reference-rom reference.rom \\\n"
+    "    --scope scope.toml --scope-rom scope.rom --seen-from outside --views views.csv\n"
     "  orcart evaluate map --views views.csv --out predicted.glb\n"
     "  orcart evaluate session procedure.orcart --surface s.ply\n"
     "  orcart evaluate board image*.png --poses poses.csv --pattern chessboard:18x16:2mm\n";
@@ -61,9 +63,11 @@ int run(Arguments& arguments) {
                  "##############################", kWidth - full, "", 100 * done);
   };
   arguments.command.seen_from = arguments.seen_from == "outside" ? SeenFrom::outside : SeenFrom::inside;
-  auto taken = take_noise(arguments);
   EvaluateCommand& c = arguments.command;
-  if (taken) taken = take_demo_files({c.surface, c.scope, c.registration, c.scope_rom, c.reference_rom});
+  auto taken = take_noise(arguments);
+  if (taken)
+    taken = told_demo_files("orcart evaluate",
+                            {c.surface, c.scope, c.registration, c.scope_rom, c.reference_rom});
   const auto report = taken ? evaluate(arguments.command, bar) : tl::unexpected(taken.error());
   if (terminal) std::fputs("\r\033[K", stderr);
   if (!report) {
@@ -115,6 +119,7 @@ void add_evaluate(CLI::App& app, int& exit_code) {
 #ifdef ORCART_WITH_CALIBRATION
   add_evaluate_board(*verb, exit_code);
 #endif
+  refuse_options_before(*verb);
   verb->callback([verb, arguments, &exit_code] {
     if (verb->get_subcommands().empty()) exit_code = run(*arguments);
   });

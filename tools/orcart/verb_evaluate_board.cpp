@@ -84,7 +84,7 @@ void add_evaluate_board(CLI::App& evaluate, int& exit_code) {
       ->check(CLI::Range(5.0, 500.0))
       ->capture_default_str();
   verb->add_option("--depth-ratio", command.hand_eye.noise.depth_ratio,
-                   "marker noise along the sensor's z against x and y")
+                   "marker noise along the sensor's z against x and y; with --poses-in tracker")
       ->check(CLI::Range(1.0, 20.0))
       ->capture_default_str();
   verb->add_option("--poses-in", command.hand_eye.noise.poses_in,

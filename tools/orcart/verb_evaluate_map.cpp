@@ -17,8 +17,9 @@ constexpr const char* kExample =
     "registration, lens,\n"
     "medium, time and mapping are propagated through the view that painted it, and shown as a colour. "
     "Independent set-ups\n"
-    "are drawn to tell whether 95 % of them land within the predicted 95 %. What is not told is the "
-    "demo's.\n\n"
+    "are drawn to tell whether 95 % of them land within the predicted 95 %. Surface, registration and "
+    "reference markers are the "
+    "demo's unless all three are told, scope and its markers unless both are.\n\n"
     "Example:\n"
     "  orcart evaluate map --surface ventricle.ply --scope scope.toml --registration registration.toml "
     "--scope-rom scope.rom \\\n"
@@ -38,7 +39,8 @@ int run(Arguments& arguments) {
   };
   command.out = arguments.out;
   command.seen_from = arguments.seen_from == "outside" ? SeenFrom::outside : SeenFrom::inside;
-  const auto taken = take_demo_files(
+  const auto taken = told_demo_files(
+      "orcart evaluate map",
       {command.surface, command.scope, command.registration, command.scope_rom, command.reference_rom});
   const auto report = taken ? make_error_map(command, bar) : tl::unexpected(taken.error());
   if (terminal) std::fputs("\r\033[K", stderr);

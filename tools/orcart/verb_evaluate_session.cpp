@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "tools/evaluate/session/session_consistency.hpp"
 #include "tools/evaluate/share_folder.hpp"
@@ -28,18 +29,28 @@ struct Arguments {
   bool json = false;
 };
 
+Result<void> take_demo_markers(SessionCommand& command) {
+  for (auto& [file, name] : {std::pair{&command.scope_rom, "tools/scope.rom"},
+                             std::pair{&command.reference_rom, "tools/reference.rom"}}) {
+    if (!file->empty()) continue;
+    auto demo = demo_file(name);
+    if (!demo) return tl::unexpected(demo.error());
+    *file = *std::move(demo);
+    std::fprintf(stderr, "orcart evaluate session: the demo's %s\n", name);
+  }
+  return {};
+}
+
 int run(Arguments& arguments) {
   SessionCommand& command = arguments.command;
   const bool terminal = ::isatty(STDERR_FILENO) == 1;
   const auto bar = [&](const std::string& what, double done) {
     if (terminal) std::fprintf(stderr, "\r\033[K%s %3.0f %%", what.c_str(), 100 * done);
   };
-  const std::filesystem::path tools = share_folder(this_program()) / "tools";
-  if (command.scope_rom.empty()) command.scope_rom = tools / "scope.rom";
-  if (command.reference_rom.empty()) command.reference_rom = tools / "reference.rom";
   command.seen_from = arguments.seen_from == "outside" ? SeenFrom::outside : SeenFrom::inside;
   command.model.marker_rms_mm = arguments.marker_rms_mm;
-  const auto report = evaluate_session(command, bar);
+  const auto taken = take_demo_markers(command);
+  const auto report = taken ? evaluate_session(command, bar) : tl::unexpected(taken.error());
   if (terminal) std::fputs("\r\033[K", stderr);
   if (!report) {
     std::fprintf(stderr, "orcart evaluate session: %s\n", report.error().message.c_str());

@@ -68,7 +68,7 @@ std::string answer(const HandEyeCalibration& c, bool as_json) {
            ",\n \"closed_form_X_SC\": " + json::pose(c.closed_form.X_SC) +
            ",\n \"scatter_mm\": " + json::number(c.refined.scatter_mm) +
            ", \"closed_form_scatter_mm\": " + json::number(c.closed_form.scatter_mm) +
-           ", \"leave_one_out_mm\": " + json::number(c.leave_one_out_mm) +
+           ", \"leave_one_out_mm\": " + json::number(c.leave_one_out_mm.value_or(NAN)) +
            ", \"least_left_out_mm\": " + json::number(c.least_left_out_mm) +
            ", \"tracker_floor_mm\": " + json::number(c.floor_mm) +
            ",\n \"mapping_error\": {\"mean_mm\": " + json::number(mapping.mean_mm) +
@@ -83,9 +83,10 @@ std::string answer(const HandEyeCalibration& c, bool as_json) {
                    closed.x(), closed.y(), closed.z(), c.closed_form.scatter_mm);
   out += json::format(
       "refined      camera at %.3f %.3f %.3f mm on the marker, board scatter %.3f mm RMS, %.3f px; leaving "
-      "each view out in "
-      "turn %.3f mm\n",
-      refined.x(), refined.y(), refined.z(), c.refined.scatter_mm, c.refined.rms_px, c.leave_one_out_mm);
+      "each view out in turn %s\n",
+      refined.x(), refined.y(), refined.z(), c.refined.scatter_mm, c.refined.rms_px,
+      c.leave_one_out_mm ? json::format("%.3f mm", *c.leave_one_out_mm).c_str()
+                         : "is not told by three views");
   if (c.spread) {
     const Eigen::Vector3d mm = c.spread->hand_eye.diagonal().head<3>().cwiseSqrt(),
                           mrad = 1e3 * c.spread->hand_eye.diagonal().tail<3>().cwiseSqrt();
@@ -146,7 +147,7 @@ void add_hand_eye(CLI::App& calibrate, int& exit_code) {
       ->check(CLI::Range(5.0, 500.0))
       ->capture_default_str();
   verb->add_option("--depth-ratio", arguments->command.noise.depth_ratio,
-                   "marker noise along the sensor's z against x and y")
+                   "marker noise along the sensor's z against x and y; with --poses-in tracker")
       ->check(CLI::Range(1.0, 20.0))
       ->capture_default_str();
   static const std::vector<std::pair<std::string, PosesIn>> frames{{"tracker", PosesIn::tracker},

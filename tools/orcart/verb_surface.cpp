@@ -154,7 +154,10 @@ int run(const Arguments& arguments) {
   return 0;
 }
 
+constexpr const char* kOfVolumes = "Of a volume";
+
 void add_growing_options(CLI::App& verb, Arguments& arguments) {
+  const std::size_t before = verb.get_options().size();
   verb.add_option("--seed", arguments.seeds, "x,y,z inside the region, mm; may be given more than once")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -181,6 +184,18 @@ void add_growing_options(CLI::App& verb, Arguments& arguments) {
   verb.add_option("--max-volume", arguments.largest_ml, "a larger region is refused as a leak, ml")
       ->check(CLI::PositiveNumber);
   verb.add_flag("--accept-leak", arguments.accept_leak, "take a region whose volume jumps within the range");
+  const auto all = verb.get_options();
+  for (std::size_t i = before; i < all.size(); ++i) all[i]->group(kOfVolumes);
+}
+
+/// Nothing is grown on a surface that was made elsewhere.
+Result<void> check_growing_options(const CLI::App& verb, const Arguments& arguments) {
+  if (!is_surface_name(arguments.input)) return {};
+  for (const CLI::Option* option : verb.get_options())
+    if (option->count() > 0 && option->get_group() == kOfVolumes)
+      return fail(arguments.input.string() + ": is a surface, and " + option->get_name() +
+                  " is of a volume; leave it out");
+  return {};
 }
 
 }  // namespace
@@ -210,7 +225,11 @@ void add_surface(CLI::App& app, int& exit_code) {
   verb->add_option("--out", arguments->output.out, "the surface, a PLY file")->required();
   verb->add_option("--page", arguments->output.page, "a folder for a page with pictures and figures");
   verb->add_flag("--json", arguments->json, "the report as JSON");
-  verb->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  verb->callback([verb, arguments, &exit_code] {
+    const auto checked = check_growing_options(*verb, *arguments);
+    if (!checked) std::fprintf(stderr, "orcart surface: %s\n", checked.error().message.c_str());
+    exit_code = checked ? run(*arguments) : 1;
+  });
 }
 
 }  // namespace orcart

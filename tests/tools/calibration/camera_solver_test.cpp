@@ -7,6 +7,7 @@
 
 #include "tests/tools/calibration/simulated_board.hpp"
 #include "tools/calibration/camera_checks.hpp"
+#include "tools/calibration/tip.hpp"
 
 namespace orcart {
 namespace {
@@ -92,14 +93,17 @@ TEST(CameraChecks, RefuseWhatLeavesTheFocalLengthOpen) {
 
 TEST(CameraSolver, KnownDistancesStandInForTilt) {
   const Lens lens = test_lens(LensModel::brown);
-  auto flat = simulated_views(lens, {.noise_px = 0.1, .tilt_rad = 0.01});
+  std::vector<Pose<C, B>> poses;
+  auto flat = simulated_views(lens, {.noise_px = 0.1, .tilt_rad = 0.05}, &poses);
   CameraTask task = task_for(LensModel::brown);
   for (std::size_t v = 0; v < flat.size(); ++v)
-    task.distances_mm.push_back(15.0 * static_cast<double>(v) / 9);
+    task.distances_mm.push_back(axis_distance_mm(poses[v]).value() - 25);
+  for (std::size_t v = 0; v < flat.size(); v += 2)  // counted from the opposite corner, as may happen
+    for (BoardCorner& c : flat[v].corners) c.board_mm = Eigen::Vector3d(26, 18, 0) - c.board_mm;
   const auto fit = solve_camera(flat, task);
   ASSERT_TRUE(fit);
   EXPECT_TRUE(check_fit(*fit, task));
-  EXPECT_NEAR(fit->lens.fx_px, lens.fx_px, 0.03 * lens.fx_px);
+  EXPECT_NEAR(fit->lens.fx_px, lens.fx_px, 0.005 * lens.fx_px);
 }
 
 TEST(CameraChecks, NameBadSets) {

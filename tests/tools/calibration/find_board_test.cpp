@@ -114,5 +114,20 @@ TEST(FindBoard, FindsAGridOfDots) {
   EXPECT_LT(worst_px(view, 60, 40), 0.4);
 }
 
+TEST(FindBoard, TellsWhichBoardsLookTheSameOnTheirSides) {
+  const auto anchor = [](const cv::Mat& board, const char* pattern) {
+    const BoardView view = find_board(seen(board, 1), parse_pattern(pattern).value());
+    EXPECT_FALSE(view.corners.empty()) << pattern << view.remark;
+    return view.anchor;
+  };
+  EXPECT_EQ(anchor(chessboard(8, 8), "chessboard:8x8:3mm"), Anchor::quarter_turn);
+  EXPECT_EQ(anchor(chessboard(9, 9), "chessboard:9x9:3mm"), Anchor::half_turn);
+  cv::Mat dots(440, 440, CV_8U, cv::Scalar(225));
+  for (int j = 0; j < 9; ++j)
+    for (int i = 0; i < 9; ++i)
+      cv::circle(dots, {60 + 40 * i, 60 + 40 * j}, 10, cv::Scalar(30), cv::FILLED, cv::LINE_AA);
+  EXPECT_EQ(anchor(dots, "dots:9x9:4mm"), Anchor::quarter_turn);
+}
+
 }  // namespace
 }  // namespace orcart

@@ -3,8 +3,15 @@
 #include "tools/calibration/hand_eye.hpp"
 
 #include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
 
+#include "tests/firmware-host/files/temporary_folder.hpp"
+#include "tests/tools/calibration/drawn_board.hpp"
 #include "tests/tools/calibration/simulated_board.hpp"
+#include "tools/calibration/board_pose.hpp"
+#include "tools/calibration/hand_eye_command.hpp"
+#include "tools/calibration/image_motion.hpp"
+#include "tools/registration/json_text.hpp"
 
 namespace orcart {
 namespace {
@@ -74,21 +81,116 @@ TEST(HandEye, RefusesMotionsThatLeaveItOpen) {
   EXPECT_NE(hand_eye_closed_form(views).error().message.find("one axis only"), std::string::npos);
 }
 
+TEST(HandEye, ANameThatIsMissingIsRefusedAndToldRatherThanPairedByOrder) {
+  PosesFile poses;
+  for (const char* name : {"c", "a", "bb"}) poses.poses.push_back({.name = name, .X_TS = {}});
+  const auto paired = poses_of_pictures({"a.png", "b.png", "c.png"}, poses, "poses.csv");
+  ASSERT_FALSE(paired);
+  EXPECT_NE(paired.error().message.find("no pose named b.png"), std::string::npos);
+  for (NamedPose& pose : poses.poses) pose.name = "pose " + pose.name;
+  EXPECT_TRUE(poses_of_pictures({"a.png", "b.png", "c.png"}, poses, "poses.csv")) << "none alike: by order";
+  poses.poses[0] = {.name = "1", .X_TS = {}, .numbered = true};
+  poses.poses[1] = {.name = "2", .X_TS = {}, .numbered = true};
+  poses.poses[2] = {.name = "3", .X_TS = {}, .numbered = true};
+  EXPECT_TRUE(poses_of_pictures({"0.png", "1.png", "2.png"}, poses, "poses.csv")) << "numbers are no names";
+}
+
+TEST(HandEye, TheSensorsDepthAndPosesInTheReferenceDoNotGoTogether) {
+  HandEyeCommand command{.images = {}, .poses = "poses.csv", .pattern = {}, .noise = {.depth_ratio = 3}};
+  command.noise.poses_in = PosesIn::reference;
+  const auto refused = calibrate_hand_eye(command, {}, {});
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("--depth-ratio"), std::string::npos);
+}
+
+TEST(HandEye, ThreeViewsDoNotTellWhatLeavingOneOutWouldMake) {
+  const TemporaryFolder folder;
+  ScopeModel scope = testing::drawn_scope(test_lens(LensModel::brown), 320);
+  scope.lens.max_angle_rad = largest_monotone_angle_rad(scope.lens, 1.5);
+  const testing::DrawnBoard board(scope, {});
+  HandEyeCommand command{.images = {}, .poses = folder / "poses.csv", .pattern = {}, .noise = {}};
+  command.pattern = parse_pattern("chessboard:9x8:3mm").value();
+  std::string rows;
+  const std::vector<Eigen::Vector3d> turns{{0.3, 0, 0}, {-0.2, 0.3, 0.2}, {0.1, -0.3, -0.3}};
+  for (std::size_t v = 0; v < turns.size(); ++v) {
+    const Pose<C, B> X_CB = testing::board_before(45, turns[v]);
+    const Pose<T, S> X_TS = kX_TB * X_CB.inverse() * kX_SC.inverse();
+    command.images.push_back(folder / json::format("view%zu.png", v));
+    cv::imwrite(command.images.back().string(), board.seen_from(X_CB, static_cast<unsigned>(v)));
+    rows += json::format("view%zu.png", v);
+    for (int i = 0; i < 3; ++i)
+      rows += json::format(",%.9g,%.9g,%.9g,%.6f", X_TS.rotation(i, 0), X_TS.rotation(i, 1),
+                           X_TS.rotation(i, 2), X_TS.translation_mm[i]);
+    rows += "\n";
+  }
+  folder.write("poses.csv", rows);
+  const auto found = calibrate_hand_eye(command, scope, {});
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_EQ(found->views.size(), 3U);
+  EXPECT_FALSE(found->leave_one_out_mm);
+  EXPECT_EQ(found->scope.residual_mm, found->refined.scatter_mm);
+}
+
+/// As a board is seen that looks the same after so many quarter turns.
+void renumber(HandEyeView& view, const Pattern& pattern, int turns) {
+  const Pose<B, B> turn = turned_about_middle(pattern, turns);
+  view.X_CB = view.X_CB * turn;
+  for (BoardCorner& c : view.board.corners) c.board_mm = (turn.inverse() * Point<B>{c.board_mm}).mm;
+}
+
 TEST(HandEye, SettlesBoardsThatLookTheSameUpsideDown) {
   const Pattern pattern = parse_pattern("chessboard:14x10:2mm").value();
   auto views = room(0);
-  Pose<B, B> half;
-  half.rotation = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  half.translation_mm = pattern.place_mm({13, 9});
-  for (const std::size_t v : {2U, 5U}) {
-    views[v].X_CB = views[v].X_CB * half;
-    for (BoardCorner& c : views[v].board.corners) c.board_mm = pattern.place_mm({13, 9}) - c.board_mm;
-  }
+  for (const std::size_t v : {2U, 5U}) renumber(views[v], pattern, 2);
   for (HandEyeView& view : views) view.board.anchor = Anchor::half_turn;
-  settle_half_turns(views, pattern);
+  settle_turns(views, pattern);
   const auto fit = hand_eye_closed_form(views);
   ASSERT_TRUE(fit);
   EXPECT_LT(fit->scatter_mm, 1e-6);
+}
+
+TEST(HandEye, SettlesBoardsThatLookTheSameOnTheirSides) {
+  const Pattern pattern = parse_pattern("dots:7x7:2mm").value();
+  auto views = room(0);
+  for (std::size_t v = 0; v < views.size(); ++v) renumber(views[v], pattern, static_cast<int>(v) % 4);
+  for (HandEyeView& view : views) view.board.anchor = Anchor::quarter_turn;
+  const auto seen = views[3].board.corners.front();
+  const Eigen::Vector3d before = (views[3].X_CB * Point<B>{seen.board_mm}).mm;
+  settle_turns(views, pattern);
+  const auto fit = hand_eye_closed_form(views);
+  ASSERT_TRUE(fit);
+  EXPECT_LT(fit->scatter_mm, 1e-6);
+  const BoardCorner& after = views[3].board.corners.front();
+  EXPECT_LT(((views[3].X_CB * Point<B>{after.board_mm}).mm - before).norm(), 1e-9);
+  EXPECT_LT((pattern.place_mm(after.lattice) - after.board_mm).norm(), 1e-9);
+}
+
+TEST(HandEye, ViewsWithoutTheColouredDotsOfOthersAreNumberedOtherwise) {
+  auto views = simulated_views(test_lens(LensModel::brown), {.views = 3});
+  keep_one_numbering(views);
+  EXPECT_EQ(views[0].anchor, Anchor::sure);
+  views[1].coloured = true;
+  keep_one_numbering(views);
+  EXPECT_EQ(views[0].anchor, Anchor::none);
+  EXPECT_EQ(views[1].anchor, Anchor::sure);
+}
+
+TEST(ImageMotion, SettlesBoardsThatLookTheSameOnTheirSides) {
+  const Pattern pattern = parse_pattern("dots:7x7:2mm").value();
+  std::vector<std::optional<SeenBoard>> seen;
+  for (int i = 0; i < 8; ++i) {
+    const Pose<B, B> back = turned_about_middle(pattern, i).inverse();
+    const Point<B> marker{{40 + 0.5 * i, 10, 300}}, camera{{30 + 0.5 * i, 12, 40}};
+    seen.push_back(SeenBoard{
+        .sight = {.at_s = 0.1 * i, .marker_mm = (back * marker).mm, .camera_mm = (back * camera).mm},
+        .anchor = Anchor::quarter_turn});
+  }
+  const auto sights = settled(seen, pattern);
+  ASSERT_EQ(sights.size(), 8U);
+  EXPECT_LT((sights[7].marker_mm - Eigen::Vector3d(43.5, 10, 300)).norm(), 1e-9);
+  EXPECT_LT((sights[7].camera_mm - Eigen::Vector3d(33.5, 12, 40)).norm(), 1e-9);
+  seen[4]->coloured = true;
+  EXPECT_EQ(settled(seen, pattern).size(), 1U);
 }
 
 }  // namespace

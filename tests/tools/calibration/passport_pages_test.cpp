@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/tools/calibration/simulated_board.hpp"
+#include "tools/calibration/camera_report.hpp"
 #include "tools/calibration/hand_eye_command.hpp"
 #include "tools/calibration/mask_finder.hpp"
 #include "tools/calibration/medium.hpp"
@@ -38,6 +39,21 @@ TEST(PassportPages, OfAMediumShowBothLensesAndEveryDepth) {
   const std::string page = medium_page(air, *fluid, "the answer");
   EXPECT_EQ(count(page, "<polyline"), 6U);
   EXPECT_EQ(page.find("nan"), std::string::npos);
+}
+
+TEST(PassportPages, OfACameraEscapeNamesAndItsJsonHasTheNotes) {
+  CameraCalibration camera;
+  camera.scope.name = "30° <b> & co";
+  camera.scope.width_px = 640, camera.scope.height_px = 480;
+  camera.scope.lens = testing::test_lens(LensModel::brown);
+  camera.scope.mask = {.cx_px = 320, .cy_px = 240, .radius_px = 220};
+  camera.notes.emplace_back("folds with five");
+  const auto page = camera_page(camera);
+  ASSERT_TRUE(page);
+  EXPECT_NE(page->find("30° &lt;b> &amp; co"), std::string::npos);
+  EXPECT_EQ(page->find("<b>"), std::string::npos);
+  EXPECT_NE(camera_json(camera).find("\"notes\": [\"folds with five\"]"), std::string::npos)
+      << camera_json(camera);
 }
 
 TEST(PassportPages, OfAHandEyeShowEveryViewEvenWhereItsPictureIsGone) {

@@ -93,6 +93,16 @@ TEST(TimeRecording, IsRefusedInWordsWhereItCannotBeRead) {
   EXPECT_NE(refusal(folder).find("64x64 px; the scope's 320x240"), std::string::npos);
 }
 
+TEST(TimeRecording, ALaterPictureOfAnotherSizeIsRefused) {
+  const TemporaryFolder folder;
+  write_recording(folder, {.movements = 1, .video_hz = 10});
+  cv::imwrite((folder / "frame0003.png").string(), cv::Mat(64, 64, CV_8UC3, cv::Scalar::all(9)));
+  const auto found = calibrate_time({.recording = folder / "", .scope = folder / "scope.toml"}, {});
+  ASSERT_FALSE(found);
+  EXPECT_NE(found.error().message.find("frame0003.png: 64x64 px; the scope's 320x240"), std::string::npos)
+      << found.error().message;
+}
+
 TEST(TimeRecording, OfDarkPicturesIsRefused) {
   const TemporaryFolder folder;
   write_recording(folder, {.movements = 1, .video_hz = 10});

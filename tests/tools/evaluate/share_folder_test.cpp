@@ -26,11 +26,27 @@ TEST(ShareFolder, OfThisProgramIsKnown) {
 }
 
 TEST(DemoFiles, TakeThePlaceOfWhatWasNotTold) {
-  std::filesystem::path surface = "mine.ply", scope, registration, scope_rom, reference_rom;
-  ASSERT_TRUE(take_demo_files({surface, scope, registration, scope_rom, reference_rom}));
-  EXPECT_EQ(surface, "mine.ply");
-  for (const auto* file : {&scope, &registration, &scope_rom, &reference_rom})
+  std::filesystem::path surface, scope, registration, scope_rom, reference_rom;
+  const auto taken = take_demo_files({surface, scope, registration, scope_rom, reference_rom});
+  ASSERT_TRUE(taken) << taken.error().message;
+  for (const auto* file : {&surface, &scope, &registration, &scope_rom, &reference_rom})
     EXPECT_TRUE(std::filesystem::is_regular_file(*file)) << *file;
+  EXPECT_NE(taken->find("carts/demo-registration.toml"), std::string::npos);
+}
+
+TEST(DemoFiles, OfThePatientAreTakenAllOrNone) {
+  std::filesystem::path surface = "mine.ply", scope, registration, scope_rom, reference_rom;
+  const auto mixed = take_demo_files({surface, scope, registration, scope_rom, reference_rom});
+  ASSERT_FALSE(mixed);
+  EXPECT_NE(mixed.error().message.find("--surface without --registration, --reference-rom"),
+            std::string::npos);
+  registration = "mine.toml", reference_rom = "mine.rom";
+  const auto own = take_demo_files({surface, scope, registration, scope_rom, reference_rom});
+  ASSERT_TRUE(own) << own.error().message;
+  EXPECT_EQ(*own, "scopes/neuro-2p7.toml, tools/scope.rom");
+  EXPECT_EQ(surface, "mine.ply");
+  scope_rom.clear();
+  EXPECT_FALSE(take_demo_files({surface, scope, registration, scope_rom, reference_rom}));
 }
 
 }  // namespace

@@ -99,6 +99,31 @@ TEST(StatedErrors, ATurnsDeviationIsRefusedForAScopeThatDoesNotTurn) {
   EXPECT_TRUE(check_turn_told(with_turn({}, 0.01), scope));
 }
 
+TEST(StatedErrors, ARegistrationOfAnotherSurfaceIsRefused) {
+  EXPECT_TRUE(check_surface({.surface_hash = "cafe"}, "cafe"));
+  EXPECT_TRUE(check_surface({.surface_hash = "unstated"}, "cafe"));
+  const auto refused = check_surface({.surface_hash = "beef"}, "cafe");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("belongs to the surface beef"), std::string::npos);
+}
+
+TEST(Evaluate, RefusesARegistrationOfAnotherSurface) {
+  const TemporaryFolder folder;
+  const BallScene ball;
+  ASSERT_TRUE(write_ply(folder / "ball.ply", *make_surface(ball.mesh, "ball")));
+  ASSERT_TRUE(write_scope(folder / "scope.toml", ball.scope));
+  const auto share = std::filesystem::path(std::getenv("ORCART_SOURCE_DIR")) / "share";
+  const auto report = evaluate({.surface = folder / "ball.ply",
+                                .scope = folder / "scope.toml",
+                                .registration = share / "carts/demo-registration.toml",
+                                .scope_rom = share / "tools/scope.rom",
+                                .reference_rom = share / "tools/reference.rom",
+                                .noises = {{"vega", 0.12}}},
+                               [](const std::string&, double) {});
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().message.find("demo-registration.toml: belongs to the surface"), std::string::npos);
+}
+
 /// `orcart evaluate` on the ball, by files.
 EvaluationReport evaluated(const TemporaryFolder& folder, const ScopeModel& scope,
                            const ErrorModel& model = {}) {

@@ -66,6 +66,8 @@ Result<ErrorMapReport> make_error_map(const ErrorMapCommand& command, const Eval
   if (auto told = check_turn_told(command.model, *scope); !told) return tl::unexpected(told.error());
   const auto registration = read_registration(command.registration);
   if (!registration) return tl::unexpected(registration.error());
+  if (auto own = check_surface(*registration, surface->identity.hash); !own)
+    return fail(command.registration.string() + ": " + own.error().message);
   auto scope_markers = markers_of_body(command.scope_rom),
        reference_markers = markers_of_body(command.reference_rom);
   if (!scope_markers) return tl::unexpected(scope_markers.error());

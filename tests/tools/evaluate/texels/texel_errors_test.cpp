@@ -68,6 +68,13 @@ class TexelErrors : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(TexelErrors, OfARegistrationOfAnotherSurfaceAreRefused) {
+  ASSERT_TRUE(write_registration(folder_ / "registration.toml", {.surface_hash = "beef"}));
+  const auto report = made(command("map.ply"));
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().message.find("belongs to the surface beef"), std::string::npos);
+}
+
 TEST_F(TexelErrors, TheirNinetyFivePercentHoldNinetyThreeToNinetySeven) {
   const auto report = made(command("map.ply"));
   ASSERT_TRUE(report) << report.error().message;
