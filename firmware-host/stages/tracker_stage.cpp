@@ -8,7 +8,9 @@ namespace orcart {
 StepReport TrackerStage::step(Instant now) noexcept {
   const DriverReport report = driver_.step(now);
   news_.refuses = refuses(report.trouble);
-  state_.store(driver_.state(), std::memory_order_relaxed);
+  // While all is well it changes with replies alone.
+  if (report.new_reply || report.health != TrackerHealth::live || report.trouble != state().trouble)
+    state_.store(driver_.state(), std::memory_order_relaxed);
   if (driver_.bumped()) {
     news_.bumped_at = now;
     driver_.forget_alerts();

@@ -171,6 +171,7 @@ void NdiDriver::begin_polling(Instant now) noexcept {
   alerts_ = told_ = {};
   refusals_in_a_row_ = 0;
   failed_tool_ = -1;
+  counter_hz_ = start_.counts_at_60_hz() ? 60 : settings_.device_rate_hz;
   form_ = settings_.poll;
   if (form_ == PollForm::automatic) form_ = best_form();
   port_status_.fill(ndi::kPortReady);
@@ -388,11 +389,6 @@ void NdiDriver::take_port_list(std::string_view text) noexcept {
     const int tool = tool_of(port.handle);
     if (tool >= 0) port_status_[static_cast<std::size_t>(tool)] = port.status;
   }
-}
-
-double NdiDriver::counter_hz() const noexcept {
-  constexpr double kPolaris_hz = 60;
-  return start_.counts_at_60_hz() ? kPolaris_hz : settings_.device_rate_hz;
 }
 
 std::string_view NdiDriver::disabled_reason(int tool) const noexcept {

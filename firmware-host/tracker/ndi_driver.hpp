@@ -63,7 +63,7 @@ class NdiDriver {
   std::string_view api_revision() const noexcept { return start_.api_revision(); }
   /// At what rate the device is thought to count its frames, whatever it measures at; once it has been
   /// started.
-  double counter_hz() const noexcept;
+  double counter_hz() const noexcept { return counter_hz_; }
   double wished_rate_hz() const noexcept { return settings_.device_rate_hz; }
   /// How poses are asked for now; never automatic while polling.
   PollForm poll_form() const noexcept { return form_; }
@@ -136,6 +136,7 @@ class NdiDriver {
   ndi::SystemAlerts told_;  ///< by the newest frame of BX2
   std::atomic<int> beeps_wanted_{0};
   bool started_before_ = false;
+  double counter_hz_ = settings_.device_rate_hz;
   int refusals_in_a_row_ = 0;      ///< of polls, without a good reply in between
   std::uint8_t refused_with_ = 0;  ///< the code of the ERRORhh behind the newest trouble; 0 where none is
   int failed_tool_ = -1;  ///< the tool that the newest failed start was busy with; -1 where with none
