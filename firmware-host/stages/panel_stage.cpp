@@ -105,7 +105,10 @@ StepReport PanelStage::step(Instant now) noexcept {
     return {};
   }
   fill_status();
-  parts_.screen.draw(screen_state_, parts_.painter, *target);
+  if (!parts_.screen.draw(screen_state_, parts_.painter, *target)) {
+    fault_.set(PortFault::unsupported);
+    return {};
+  }
   const auto serial = parts_.panel.present(parts_.clock.now());
   fault_.set(serial || serial.error() == PortFault::busy ? PortFault::nothing_yet : serial.error());
   if (!serial) return {};

@@ -83,6 +83,23 @@ class PanelStageTest : public ::testing::Test {
                      .freshness = {.tracker_period = 16ms, .video_period = 33ms}}};
 };
 
+TEST_F(PanelStageTest, WhatCannotBeDrawnIntoIsAFaultAndNotShown) {
+  SimulatedPanel larger(clock_, {.mode = {.width_px = 400, .height_px = 300, .refresh_hz = 30}});
+  PanelStage stage({.panel = larger,
+                    .screen = screen_,
+                    .painter = painter_,
+                    .painter_stage = painting_,
+                    .clock = clock_,
+                    .lanes = lanes_,
+                    .frames = frames_,
+                    .captures = captures_,
+                    .sink = &sink_},
+                   {.eye = eye_on(wall_.mesh, {0, 0, -1}, {0, -1, 0})});
+  stage.step(instant_from_nanos(Nanos{100ms}.count()));
+  EXPECT_EQ(stage.fault(), PortFault::unsupported);
+  EXPECT_EQ(stage.presented(), 0u);
+}
+
 TEST_F(PanelStageTest, ATrackerThatRefusesIsNoMatterOfItsCable) {
   const Instant came = instant_from_nanos(Nanos{2003ms}.count());
   show(came);
