@@ -70,31 +70,25 @@ class PanelStageTest : public ::testing::Test {
                           .captures = captures_,
                           .buffer_count = 1}};
   LossySink sink_;
-  PanelStage stage_{{.panel = panel_,
-                     .screen = screen_,
-                     .painter = painter_,
-                     .painter_stage = painting_,
-                     .clock = clock_,
-                     .lanes = lanes_,
-                     .frames = frames_,
-                     .captures = captures_,
-                     .sink = &sink_},
+  PanelStage::Parts parts_on(Panel& panel) {
+    return {.panel = panel,
+            .screen = screen_,
+            .painter = painter_,
+            .painter_stage = painting_,
+            .clock = clock_,
+            .lanes = lanes_,
+            .frames = frames_,
+            .captures = captures_,
+            .sink = &sink_};
+  }
+  PanelStage stage_{parts_on(panel_),
                     {.eye = eye_on(wall_.mesh, {0, 0, -1}, {0, -1, 0}),
                      .freshness = {.tracker_period = 16ms, .video_period = 33ms}}};
 };
 
 TEST_F(PanelStageTest, WhatCannotBeDrawnIntoIsAFaultAndNotShown) {
   SimulatedPanel larger(clock_, {.mode = {.width_px = 400, .height_px = 300, .refresh_hz = 30}});
-  PanelStage stage({.panel = larger,
-                    .screen = screen_,
-                    .painter = painter_,
-                    .painter_stage = painting_,
-                    .clock = clock_,
-                    .lanes = lanes_,
-                    .frames = frames_,
-                    .captures = captures_,
-                    .sink = &sink_},
-                   {.eye = eye_on(wall_.mesh, {0, 0, -1}, {0, -1, 0})});
+  PanelStage stage(parts_on(larger), {.eye = eye_on(wall_.mesh, {0, 0, -1}, {0, -1, 0})});
   stage.step(instant_from_nanos(Nanos{100ms}.count()));
   EXPECT_EQ(stage.fault(), PortFault::unsupported);
   EXPECT_EQ(stage.presented(), 0u);
