@@ -45,9 +45,9 @@ struct TrackedTool {
 };
 
 /// Polls at the device's own rate would find each frame equally old, by up to a period, and no clock fit
-/// could know by how much. A little faster, and every two seconds one comes just after the frame it asks for;
-/// one poll in 120 finds the frame before once more.
-constexpr double kPollsPerFrame = 1 + 1.0 / 120;
+/// could know by how much. A little faster, and every second one comes just after the frame it asks for;
+/// one poll in 60 finds the frame before once more.
+constexpr double kPollsPerFrame = 1 + 1.0 / 60;
 
 struct NdiSettings {
   std::vector<TrackedTool> tools;  ///< loaded and checked; uploaded in this order

@@ -61,14 +61,12 @@ PaintingError painting_error(const CartRig& rig) {
 }
 
 /// How far beside its place a point on the circle's edge is seen through what the turn is believed to be: the
-/// marker's pose is the true one. The worst of all directions and captures once stamps are sure: polls and
-/// frames meet every two seconds.
+/// marker's pose is the true one. The worst of all captures and directions.
 double edge_error_px(const CartRig& rig) {
   const ScopeModel& scope = rig.patient.scope;
   double worst = 0;
   for (std::size_t i = 0; i < rig.cart->captures().size(); ++i) {
     const CaptureRecord& c = rig.cart->captures().at(i);
-    if (c.mid_exposure < rig.at(2500ms)) continue;
     const TurnedOptics truth = optics_at(scope, rig.devices->world().turn_rad(c.mid_exposure)),
                        believed = optics_at(scope, c.turn_rad);
     for (int k = 0; k < 24; ++k) {

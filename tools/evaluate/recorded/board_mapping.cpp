@@ -271,7 +271,7 @@ ViewMapping corners_in_painting(const BoardView& view, const Pattern& pattern, c
                                 const Pose<M, C>& X_MC, FlatPainting flat) {
   ViewMapping mapping{
       .image = view.image.filename().string(), .seen = view.corners.size(), .flat = std::move(flat)};
-  const BoardView found = find_board(mapping.flat.bgr, pattern);
+  const BoardView found = find_board(carried_on(mapping.flat, 0.25 * pattern.spacing_mm), pattern);
   for (const BoardCorner& corner : view.corners) {
     const auto ray = on_plane(lens, X_MC, corner.pixel_px);
     const auto at = ray ? found_as(corner, *ray, found, mapping.flat, pattern) : std::nullopt;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <opencv2/imgproc.hpp>
+
 #include "firmware-host/files/surface_file.hpp"
 
 namespace orcart {
@@ -92,6 +94,24 @@ Result<FlatPainting> paint_plane(const PlaneExtent& extent, const ScopeModel& sc
   const AtlasRecords records = painter->painter().read_records();
   for (int v = 0; v < height; ++v) flatten_row(v, painter->layout(), atlas, records, flat);
   return flat;
+}
+
+cv::Mat carried_on(const FlatPainting& painting, double margin_mm) {
+  if (painting.painted.empty()) return painting.bgr;
+  cv::Mat away_px, nearest;  // of each pixel: how far, and the number of, the nearest painted one
+  cv::distanceTransform(255 - painting.painted, away_px, nearest, cv::DIST_L2, cv::DIST_MASK_5,
+                        cv::DIST_LABEL_PIXEL);
+  std::vector<cv::Vec3b> colours(static_cast<std::size_t>(cv::countNonZero(painting.painted)) + 1);
+  for (int v = 0; v < painting.bgr.rows; ++v)
+    for (int u = 0; u < painting.bgr.cols; ++u)
+      if (painting.painted.at<std::uint8_t>(v, u) != 0)
+        colours[static_cast<std::size_t>(nearest.at<std::int32_t>(v, u))] = painting.bgr.at<cv::Vec3b>(v, u);
+  cv::Mat wider = painting.bgr.clone();
+  for (int v = 0; v < wider.rows; ++v)
+    for (int u = 0; u < wider.cols; ++u)
+      if (away_px.at<float>(v, u) * painting.pixel_mm <= margin_mm)
+        wider.at<cv::Vec3b>(v, u) = colours[static_cast<std::size_t>(nearest.at<std::int32_t>(v, u))];
+  return wider;
 }
 
 Picture picture_of(const cv::Mat& bgr) {

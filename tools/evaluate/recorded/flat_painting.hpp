@@ -48,6 +48,10 @@ struct PosedPicture {
 Result<FlatPainting> paint_plane(const PlaneExtent& extent, const ScopeModel& scope,
                                  std::vector<PosedPicture>& pictures, const OfflinePaintOptions& options);
 
+/// The painting with its border's colours carried on by `margin_mm`, as filters do at a picture's border: the
+/// black beside it is no edge of the board.
+cv::Mat carried_on(const FlatPainting& painting, double margin_mm);
+
 /// For a page or a file.
 Picture picture_of(const cv::Mat& bgr);
 
