@@ -7,10 +7,7 @@ namespace orcart {
 
 StepReport TrackerStage::step(Instant now) noexcept {
   const DriverReport report = driver_.step(now);
-  news_.refuses = refuses(report.trouble);
-  // While all is well it changes with replies alone.
-  if (report.new_reply || report.health != TrackerHealth::live || report.trouble != state().trouble)
-    state_.store(driver_.state(), std::memory_order_relaxed);
+  if (report.health != TrackerHealth::live || now >= state_due_) tell_state(report.trouble, now);
   if (driver_.bumped()) {
     news_.bumped_at = now;
     driver_.forget_alerts();
@@ -28,6 +25,12 @@ StepReport TrackerStage::step(Instant now) noexcept {
   return {.worked = report.worked, .items = report.new_reply ? 1u : 0u};
 }
 
+void TrackerStage::tell_state(TrackerTrouble trouble, Instant now) noexcept {
+  news_.refuses = refuses(trouble);
+  state_.store(driver_.state(), std::memory_order_relaxed);
+  state_due_ = now + kStateEvery;
+}
+
 /// The fit begins anew where the counter runs at another rate than it was laid for.
 void TrackerStage::count(std::uint32_t device_frame, Instant arrived_at) noexcept {
   const double assumed_hz = driver_.counter_hz();
@@ -41,8 +44,9 @@ void TrackerStage::count(std::uint32_t device_frame, Instant arrived_at) noexcep
 
 PoseSample TrackerStage::sample_of(const TrackerReply& reply) noexcept {
   // A reply with a missing tool is shorter and so comes sooner: what the line takes is taken off each.
-  count(reply.device_frame, reply.arrived_at - reply.wire_time);
-  (void)fit_.observe(reply.device_frame, reply.arrived_at - reply.wire_time);
+  const Instant arrived_at = reply.arrived_at - reply.wire_time;
+  count(reply.device_frame, arrived_at);
+  (void)fit_.observe(reply.device_frame, arrived_at);
   const ToolReading &scope = reply.tools[0], &reference = reply.tools[1];
   PoseSample sample{.measured_at = fit_.host_time(reply.device_frame),
                     .arrived_at = reply.arrived_at,

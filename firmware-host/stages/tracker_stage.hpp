@@ -30,7 +30,10 @@ class TrackerStage final : public Stage {
   const ClockFit& clock_fit() const noexcept { return fit_; }
 
  private:
+  static constexpr Nanos kStateEvery = 500ms;  ///< while all is well: only a log waits for it
+
   PoseSample sample_of(const TrackerReply& reply) noexcept;
+  void tell_state(TrackerTrouble trouble, Instant now) noexcept;
   void count(std::uint32_t device_frame, Instant arrived_at) noexcept;
 
   NdiDriver& driver_;
@@ -40,6 +43,7 @@ class TrackerStage final : public Stage {
   CounterRate counter_{fit_settings_.rate_hz};
   Lanes& lanes_;
   TrackerNews news_;
+  Instant state_due_{};
   std::atomic<TrackerState> state_{TrackerState{}};  ///< relaxed, without a partner: it stands for itself
   static_assert(std::atomic<TrackerState>::is_always_lock_free);
 };

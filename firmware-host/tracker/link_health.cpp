@@ -83,7 +83,7 @@ bool LinkHealth::on_frame(std::uint32_t frame, Instant now) noexcept {
     frame_seen_ = true;
     frame_changed_at_ = now;
   }
-  frame_stuck_ = now - frame_changed_at_ >= frame_patience();
+  frame_stuck_ = !fresh && now - frame_changed_at_ >= frame_patience();
   return fresh;
 }
 
